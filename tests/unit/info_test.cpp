@@ -80,7 +80,7 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
   EXPECT_TRUE(capture["missing"].empty()) << capture["missing"];
 }
 
-// A ball of a medium with a mean free path of 1 / (.2 + .01) mm: the model has no sides.
+// A ball of a medium with a transport mean free path of 1 / (.2 + .01) mm: the model has no sides.
 TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
   SceneParameters p{.name = "sphere", .width = 64, .height = 64, .shadowSize = 8};
   for (const double radius : {3.0, 12.0}) {
@@ -90,7 +90,9 @@ TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
     capture.materials[0] = CoefficientMaterial{{0.2, 0.3, 0.4}, {0.01, 0.01, 0.01}, 0, 1.4};
     writeCapture(capture, directory / "ball.exr");
     const json warnings = warningsOf(directory / "ball.exr");
-    EXPECT_EQ(has(warnings, "is less than 4 mean free paths, which are 4.76 mm each in R"), radius == 3) << warnings;
+    EXPECT_EQ(has(warnings, "is less than 4 transport mean free paths, which are 4.76 mm each in R"),
+              radius == 3)
+        << warnings;
     // The ball's width, less at most two pixels of 9/64 mm.
     EXPECT_EQ(has(warnings, "the body's size, 5.") || has(warnings, "the body's size, 6 mm"), radius == 3)
         << warnings;
@@ -147,7 +149,7 @@ TEST_F(InfoCommand, GoodCapturesGiveNoWarning) {
   EXPECT_EQ(info()["warnings"], json::array());
   for (const SceneInfo& scene : listScenes()) {
     SceneParameters parameters{.name = scene.name, .width = 24, .height = 24};
-    parameters.shadowSize = 128;  // finer than four mean free paths
+    parameters.shadowSize = 128;  // finer than four diffusion lengths
     const std::filesystem::path file = directory / (scene.name + ".exr");
     writeCapture(makeScene(parameters), file);
     const json warnings = warningsOf(file);

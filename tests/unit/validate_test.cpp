@@ -246,11 +246,11 @@ struct Warned {
   void (*change)(Frame&);
 };
 
-// The fixture's texels are .3 mm long and its material's mean free path is 2 mm.
+// The fixture's texels are .3 mm long and its material's diffusion length is 2 mm.
 const std::vector<Warned> kWarned = {
     {"Coarse",
-     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 mean free paths of materials[0], which are "
-     "8 mm",
+     "shadowMaps[0].extent makes a texel 20 mm long, more than 4 diffusion lengths of materials[0], which "
+     "are 8 mm",
      [](Frame& f) { f.maps[0].extent[0] = 1; }},
     {"Overlap", "shadowMaps[1].options.offset is 32, 63: the tile overlaps that of shadowMaps[0]",
      [](Frame& f) {
