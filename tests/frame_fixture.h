@@ -117,6 +117,13 @@ struct Frame {
   }
 };
 
+// Lacks no image that validation asks for.
+struct CompleteFrame : Frame {
+  explicit CompleteFrame(uint32_t shadowImages = 1) : Frame(shadowImages) {
+    for (PellucidImage& image : frame.transients) image = view();
+  }
+};
+
 // What a dispatch of the plan binds.
 inline std::vector<PellucidBinding> bindingsOf(const PellucidPlan& plan, const PellucidDispatch& dispatch) {
   std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);

@@ -208,8 +208,7 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
   EXPECT_NE(sentences.last.find("descriptorPools is 2"), std::string::npos) << sentences.last;
   desc.options.descriptorPools = 1;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << sentences.last;
-  Frame f;
-  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  CompleteFrame f;
   const PellucidPlan plan = f.plan();
   std::vector<unsigned char> constants;
   NullCommands refused;
@@ -250,8 +249,7 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
       {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 40000; }},
       {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 0x80000001u; }}};
   for (const auto& [words, damage] : damages) {
-    Frame f;
-    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    CompleteFrame f;
     f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
     f.thesis.minimumDotTableSize = 3;
     f.thesis.minimumDotTable = table;
@@ -276,8 +274,7 @@ TEST(ContextPipelines, AreMadeForPlans) {
   PellucidContext* context = nullptr;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
   const int layouts = device.live;
-  Frame f;
-  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  CompleteFrame f;
   f.frame.options.features = PELLUCID_FEATURE_DIFFUSION;
   const PellucidPlan plan = f.plan();
   std::vector<unsigned char> constants;

@@ -19,11 +19,10 @@ using namespace pellucid;
 using pellucid::test::Frame;
 
 // Lacks nothing.
-struct Whole : Frame {
+struct Whole : pellucid::test::CompleteFrame {
   PellucidLightTable table{};
 
   Whole() {
-    for (PellucidImage& image : frame.transients) image = view();
     frame.options.lightTableCount = 1;
     frame.options.lightTables = &table;
   }
