@@ -47,16 +47,6 @@ Mask everywhere(const Image& image) { return Mask(image.pixels(), 1); }
 
 // ---- Surfaces
 
-TEST(Surfaces, TiltedPlanesAreOneSurface) {
-  // At 63 degrees by the slope itself, at 84 by the steps beside.
-  for (const double slope : {0.0, 1.9, 10.0}) {
-    const Surfaces surfaces(shape(9, 9, [&](int x, int y) { return 100 + slope * (x + y); }));
-    EXPECT_TRUE(surfaces.wholeBlock(0, 0, 9)) << slope;
-    EXPECT_TRUE(surfaces.connected(4, 4, 1, 1)) << slope;
-    EXPECT_TRUE(surfaces.connected(4, 4, -1, 0)) << slope;
-  }
-}
-
 TEST(Surfaces, ASphereIsOneSurfaceAndEndsBeforeTheWall) {
   // Radius 30.3 pixels, 100 units before a wall.
   constexpr double kRadius = 30.3;
@@ -405,7 +395,8 @@ TEST(Flicker, OnePixelOfTwoThousand) {
   EXPECT_EQ(compareShifted(still, moved, everywhere(still), 1, 0).worstPixel, (std::array<int, 2>{20, 12}));
 }
 
-// A wall that an orthographic camera sees, moved by 2.5 pixels: a linear picture is the same between pixels, and a dot is not.
+// A wall that an orthographic camera sees, moved by 2.5 pixels: a linear picture is the same between pixels,
+// and a dot is not.
 TEST(Flicker, PathsAreFollowedOnTheSurface) {
   Capture still;
   still.name = "wall";
@@ -422,7 +413,8 @@ TEST(Flicker, PathsAreFollowedOnTheSurface) {
     Image image(32, 32, 3);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(5 + 0.1 * (x - shift) + 0.2 * c * y);
+        for (int c = 0; c < 3; ++c)
+          image.at(x, y)[c] = static_cast<float>(5 + 0.1 * (x - shift) + 0.2 * c * y);
     return image;
   };
   const Image before = picture(0);
