@@ -11,7 +11,6 @@
 
 #include "common/error.h"
 #include "reference/ambient.h"
-#include "reference/light.h"
 #include "reference_captures.h"
 
 namespace pellucid::harness::reference {
@@ -387,30 +386,6 @@ TEST(Reference, PointLightMapEncodingsAgree) {
       EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(x, 0)[0] / irradiance, 1, 1e-4);
     }
   }
-}
-
-TEST(Reference, RangeAndConeFollowKhrLightsPunctual) {
-  Light light;
-  light.type = PELLUCID_LIGHT_SPOT;
-  light.position = {0, 0, 0};
-  light.direction = {0, 0, -2};
-  light.color = {1, 0.5, 0};
-  light.intensity = 8;
-  light.range = 4;
-  light.innerConeAngle = 0.2;
-  light.outerConeAngle = 0.6;
-  const double window = 1 - std::pow(2.0 / 4, 4);
-  const glm::dvec3 axis = arrivalAt(light, {0, 0, -2}).irradiance;
-  EXPECT_NEAR(axis.x, 8 / 4.0 * window, 1e-12);
-  EXPECT_NEAR(axis.y, axis.x / 2, 1e-12);
-  EXPECT_EQ(axis.z, 0);
-  const double angle = 0.4;
-  const double t = (std::cos(angle) - std::cos(0.6)) / (std::cos(0.2) - std::cos(0.6));
-  EXPECT_NEAR(arrivalAt(light, {2 * std::sin(angle), 0, -2 * std::cos(angle)}).irradiance.x,
-              8 / 4.0 * window * t * t, 1e-12);
-  EXPECT_EQ(arrivalAt(light, {2 * std::sin(0.7), 0, -2 * std::cos(0.7)}).irradiance.x, 0);
-  EXPECT_EQ(arrivalAt(light, {0, 0, -5}).irradiance.x, 0);
-  EXPECT_EQ(arrivalAt(light, {0, 0, 0}).irradiance.x, 0);
 }
 
 TEST(Reference, WorldAndViewSpaceNormalsAgreeUnderARotatedCamera) {
