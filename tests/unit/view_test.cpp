@@ -148,12 +148,9 @@ TEST(ViewInput, DragOrbitsHalfATurnAPicture) {
   Drag d;
   EXPECT_TRUE(d.drag(200, 200, 400, 200).scene);
   expectNear(d.state.camera.eye(), {-5, 0, 0}, kRounding);  // the model turns right, so the camera goes left
-}
-
-TEST(ViewInput, FixedCamerasStay) {
-  Drag d;
-  d.source.fixed = true;
-  EXPECT_FALSE(d.drag(200, 200, 400, 200).any());
+  Drag fixed;
+  fixed.source.fixed = true;
+  EXPECT_FALSE(fixed.drag(200, 200, 400, 200).any());
 }
 
 TEST(ViewInput, ShiftDragsTheSelectedLight) {
