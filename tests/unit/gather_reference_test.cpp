@@ -66,27 +66,6 @@ TEST(GatherBody, BallsReturnWhatWalksDo) {
   }
 }
 
-// A slab's factors are its own, whatever a ball's are; what comes through it stays all of K.
-TEST(GatherBody, SlabsAreNoBalls) {
-  PellucidMaterialDesc desc;
-  ASSERT_EQ(pellucidFindPreset("marble", &desc), PELLUCID_OK);
-  PellucidMaterial material;
-  ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
-  const reference::GatherKernel kernel(material);
-  for (const double thickness : {0.5, 2.0, 8.0}) {
-    const reference::BodyFactors slab = kernel.body(thickness, 0),
-                                 ball = kernel.body(thickness, 2 / thickness);
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_EQ(slab.returned[c], kernel.slabReflectance(thickness)[c]);
-      EXPECT_EQ(slab.through[c], 1);
-      EXPECT_LE(ball.through[c], 1);
-      EXPECT_GE(ball.through[c], 0.5);
-    }
-  }
-  const reference::BodyFactors halfSpace = kernel.body(INFINITY, 0);
-  EXPECT_EQ(halfSpace.returned, glm::dvec3(1));
-}
-
 // One pixel's exitance from all texels, against paths from the same point.
 struct Shape {
   const char* scene;
