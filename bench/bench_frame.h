@@ -2,16 +2,28 @@
 // module's plan binds.
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "common/gpu_image.h"
 #include "compute_pass.h"
 #include "replay/replay.h"
-#include "variant.h"
 
 namespace pellucid::bench {
+
+// A way to do a part of the frame, the module's or another, as the tables compare them.
+struct Variant {
+  std::string name;
+  uint32_t dispatches, barriers;
+  std::uint64_t transientBytes;                 // of its images between dispatches
+  std::function<void(VkCommandBuffer)> record;  // the barriers within, none around
+  std::function<harness::Image()> output;       // RGB; after a run
+};
+
+// Of a run.
+harness::Image outputOf(harness::Device& device, const Variant& variant);
 
 class BenchFrame {
 public:
@@ -30,27 +42,25 @@ public:
   Resource planned(uint32_t binding) const;
   bool isPlanned(uint32_t binding) const;
 
-  // Least device-memory traffic of a dispatch of the plan: each image that it binds is read or written once.
-  // Formats that the module does not know are the common ones.
-  uint64_t modeledBytes(uint32_t dispatch) const;
-
   // The plan's constants, anew.
   void writeConstants() const;
 
   const harness::FrameRun& run() const { return run_; }
 
   // A cleared image of the frame's size.
-  std::shared_ptr<harness::GpuImage> image(VkFormat format) const;
+  std::shared_ptr<harness::GpuImage> image(VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT) const;
+  // Of so many images of the default format.
+  std::uint64_t bytesOf(std::uint64_t images) const;
 
 private:
-  std::vector<PellucidBinding> bindings(uint32_t dispatch) const;
-  std::optional<PellucidBinding> find(uint32_t binding) const;
+  const PellucidBinding* find(uint32_t binding) const;
 
   harness::Device& device_;
   int width_, height_;
   PellucidMaterial material_;
   harness::FrameRun run_;
   harness::HostBuffer constants_;
+  std::vector<PellucidBinding> bindings_;  // of the first dispatch
 };
 
 // The module's own way: all of the frame's plan.

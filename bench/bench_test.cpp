@@ -19,7 +19,7 @@
 #include "reference/reference.h"
 #include "scene/scene.h"
 #include "submission.h"
-#include "turntable_shares.h"
+#include "thesis.h"
 
 namespace pellucid::bench {
 namespace {

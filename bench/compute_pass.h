@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/barrier.h"
 #include "common/device.h"
 #include "common/push_layout.h"
 #include "pellucid/pellucid.h"
@@ -28,13 +29,11 @@ public:
   ComputePass(harness::Device& device, std::span<const uint32_t> spirv,
               const std::vector<VkDescriptorType>& types, const Tile& tile = {});
 
+  // Without a barrier.
   void record(VkCommandBuffer commandBuffer, int width, int height, const std::vector<Resource>& resources,
               const std::array<uint32_t, 4>& push = {}) const;
 
 private:
-  void createPipeline(std::span<const uint32_t> spirv);
-
-  harness::Device& device_;
   std::vector<VkDescriptorType> types_;
   Tile tile_;
   harness::Owned<VkSampler, vkDestroySampler> sampler_;
@@ -43,6 +42,9 @@ private:
 };
 
 // What one dispatch writes, the next may read and overwrite.
-void computeBarrier(VkCommandBuffer commandBuffer);
+inline void computeBarrier(VkCommandBuffer commandBuffer) {
+  harness::barrier(commandBuffer, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                   harness::kComputing);
+}
 
 }  // namespace pellucid::bench

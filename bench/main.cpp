@@ -1,9 +1,7 @@
 // pellucid_bench: GPU times of the module and of others beside their errors. What is timed is checked first.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -13,8 +11,6 @@
 #include "context_creation.h"
 #include "frames.h"
 #include "options.h"
-#include "plane.h"
-#include "scene.h"
 #include "submission.h"
 #include "thesis.h"
 
@@ -46,7 +42,6 @@ std::string textOf(Json json) {
 
 void write(Json json, const Options& options) {
   if (options.ratios) {
-    json.erase("floor_us");
     for (Json& row : json["results"])
       for (const char* time : {"us", "p10_us", "p90_us", "floor_us", "cpu_us", "cpu_plan_us",
                                "cpu_constants_us", "cpu_record_us"})
@@ -115,19 +110,6 @@ private:
 
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
-    const PellucidMaterial material = benchMaterial();
-    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius),
-                    options_.plane.errorPixels};
-    if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables),
-                    [&](const char* name) { return wanted(name); })) {
-      const auto [width, height] = options_.plane.size;
-      const double radius = options_.plane.radius;
-      std::fprintf(table_, "planes of %d x %d, radius %g pixels\n", width, height, radius);
-      PlanePlots planes = measurePlanes(site, options_.tables, options_.plane, repeat_, report_);
-      plots_["diffusion"] = std::move(planes.diffusion);
-      json_.update(
-          {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
-    }
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))

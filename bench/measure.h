@@ -21,7 +21,7 @@ struct Time {
 Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record);
 
 // The same of each of `parts`, which are recorded in turn: what one costs where it stands, and nothing where
-// the device finds that it need not run. A part brings its own barrier; all have run before.
+// the device finds that it need not run. A part brings its own barrier.
 std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t parts,
                                const std::function<void(VkCommandBuffer, uint32_t part)>& record);
 

@@ -3,14 +3,21 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <numbers>
+#include <optional>
 #include <vector>
 
-#include "baselines/baselines.h"
+#include "baselines/whole_frames.h"
 #include "bench_frame.h"
 #include "capture/material.h"
 #include "common/error.h"
 #include "gltf/gltf.h"
+#include "kCombine.h"
+#include "kLinearize.h"
+#include "kThickness.h"
+#include "kTransmittance.h"
+#include "kTransmittanceOfThickness.h"
 #include "measure.h"
 #include "names.h"
 #include "raster/draw.h"
@@ -23,8 +30,6 @@
 #include "scene/turn.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"
-#include "steps.h"
-#include "turntable_shares.h"
 
 namespace pellucid::bench {
 
@@ -72,6 +77,79 @@ ReplaySettings translucencyAlone() {
   settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   return settings;
 }
+
+constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+constexpr VkDescriptorType kWrite = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+
+// Translucency of camera-space thickness as separate dispatches, the way the thesis (4.7.2) first has it. The
+// frame: device depths, normals, back depth, at most one shadow image, translucency alone with 1.
+class Steps {
+public:
+  explicit Steps(const std::shared_ptr<const BenchFrame>& frame)
+      : frame_(frame),
+        linearize_(frame->device(), kLinearize, {kUniform, kRead, kWrite}),
+        thickness_(frame->device(), kThickness, {kUniform, kRead, kRead, kWrite}),
+        transmittance_(frame->device(), kTransmittanceOfThickness, transmittanceTypes()),
+        both_(frame->device(), kTransmittance, transmittanceTypes()),
+        addition_(frame->device(), kCombine, {kUniform, kRead, kRead, kWrite}),
+        front_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        back_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        chord_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        transmitted_(frame->image()),
+        result_(frame->image()) {}
+
+  // Planar distances, which a raster pass draws otherwise.
+  void linearize(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, linearize_, {frame_->images().frontDepth, front_->use()});
+    dispatch(commandBuffer, linearize_, {frame_->images().backDepth, back_->use()});
+  }
+  void thickness(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, thickness_, {front_->use(), back_->use(), chord_->use()});
+  }
+  void transmittance(VkCommandBuffer commandBuffer) const {
+    transmit(commandBuffer, transmittance_, *chord_);
+  }
+  // Thickness and transmittance in one.
+  void both(VkCommandBuffer commandBuffer) const { transmit(commandBuffer, both_, *back_); }
+  void addition(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, addition_, {frame_->images().irradiance, transmitted_->use(), result_->use()});
+  }
+
+  using Step = void (Steps::*)(VkCommandBuffer) const;
+  Image outputOf(const std::vector<Step>& steps) const {
+    frame_->device().run([&](VkCommandBuffer commandBuffer) {
+      for (const Step step : steps) {
+        (this->*step)(commandBuffer);
+        computeBarrier(commandBuffer);
+      }
+    });
+    return rgb(result_->download());
+  }
+
+private:
+  static std::vector<VkDescriptorType> transmittanceTypes() {
+    return {kUniform, kBuffer, kBuffer, kBuffer, kRead, kRead, kRead, kRead, kRead, kWrite};
+  }
+  void transmit(VkCommandBuffer commandBuffer, const ComputePass& pass, const GpuImage& chordOrBack) const {
+    const PellucidFrame& f = frame_->images();
+    dispatch(commandBuffer, pass,
+             {frame_->planned(PELLUCID_BINDING_LIGHTS), frame_->planned(PELLUCID_BINDING_SHADOWS),
+              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(), f.normal,
+              f.material, frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
+  }
+  void dispatch(VkCommandBuffer commandBuffer, const ComputePass& pass,
+                std::vector<Resource> resources) const {
+    resources.insert(resources.begin(), frame_->planned(PELLUCID_BINDING_FRAME));
+    pass.record(commandBuffer, frame_->width(), frame_->height(), resources,
+                {frame_->run().plan().activeLights});
+  }
+
+  std::shared_ptr<const BenchFrame> frame_;
+  ComputePass linearize_, thickness_, transmittance_, both_, addition_;
+  std::shared_ptr<GpuImage> front_, back_, chord_, transmitted_, result_;
+};
 
 class ThesisBench {
 public:
@@ -226,13 +304,20 @@ private:
 
   void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
                        const FrontTarget& front) {
-    requireAgreement(frame);
-    const TranslucencySteps steps = translucencySteps(frame);
-    sum.thickness += time(steps.thickness);
-    sum.transmittance += time(steps.transmittance);
-    sum.both += time(steps.both);
-    sum.addition += time(steps.addition);
-    sum.fused += time(moduleVariant(frame, "").record);
+    const Steps steps(frame);
+    const Variant module = moduleVariant(frame, "");
+    const Image right = outputOf(device_, module);
+    requireAgreement(right, steps.outputOf({&Steps::linearize, &Steps::both, &Steps::addition}));
+    requireAgreement(right, steps.outputOf({&Steps::linearize, &Steps::thickness, &Steps::transmittance,
+                                            &Steps::addition}));
+    const auto timeOf = [&](Steps::Step step) {
+      return time([&](VkCommandBuffer commandBuffer) { (steps.*step)(commandBuffer); });
+    };
+    sum.thickness += timeOf(&Steps::thickness);
+    sum.transmittance += timeOf(&Steps::transmittance);
+    sum.both += timeOf(&Steps::both);
+    sum.addition += timeOf(&Steps::addition);
+    sum.fused += time(module.record);
     const bool keepGreater = view.reversedDepth;
     const RenderTarget target(device_, raster_.width, raster_.height,
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
@@ -243,28 +328,18 @@ private:
              {&front.depthNormal(), &front.albedoObject(), &planned});
   }
 
-  // The timed variants compute the same: the steps are held against the module's dispatch.
-  void requireAgreement(const std::shared_ptr<const BenchFrame>& frame) const {
+  static void requireAgreement(const Image& module, const Image& steps) {
     constexpr double kTolerance = 5e-3;  // halves, and chords that are stored in between
-    std::vector<Image> images;
-    for (const Variant& variant : translucencyVariants(frame)) {
-      device_.run(variant.record);
-      images.push_back(variant.output());
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < module.data.size(); ++i) {
+      const double value = module.data[i];
+      if (value == 0) continue;  // pixels without a material are the steps' alone
+      difference += std::pow(static_cast<double>(steps.data[i]) - value, 2);
+      size += value * value;
     }
-    const Image& module = images.back();
-    for (std::size_t k = 0; k + 1 < images.size(); ++k) {
-      double difference = 0, size = 0;
-      for (std::size_t i = 0; i < module.data.size(); ++i) {
-        const double value = module.data[i];
-        // Pixels without a material are the steps' alone.
-        if (value == 0) continue;
-        difference += std::pow(static_cast<double>(images[k].data[i]) - value, 2);
-        size += value * value;
-      }
-      if (!(difference <= kTolerance * kTolerance * size))
-        throw DeviceError("the separate steps differ from the module's dispatch by " +
-                          std::to_string(std::sqrt(difference / size)));
-    }
+    if (!(difference <= kTolerance * kTolerance * size))
+      throw DeviceError("the separate steps differ from the module's dispatch by " +
+                        std::to_string(std::sqrt(difference / size)));
   }
 
   Device& device_;
@@ -343,6 +418,28 @@ void print(const std::vector<Row>& rows, Report& report) {
 }
 
 }  // namespace
+
+TurntableShares turntableShares(const std::vector<TurntableFrame>& frames) {
+  TurntableShares shares;
+  const double one = 1.0 / static_cast<double>(frames.size());
+  for (const TurntableFrame& frame : frames) shares.necessary += frame.necessary ? one : 0;
+  for (std::size_t i = 0; i < std::size(kCoherence); ++i) {
+    // Frames without light that comes through keep nothing, so that the first one after them is computed.
+    std::optional<double> kept, keptOfBoth;
+    for (const TurntableFrame& frame : frames) {
+      if (!kept || std::abs(frame.cosine - *kept) > kCoherence[i]) {
+        shares.coherent[i] += one;
+        kept = frame.cosine;
+      }
+      if (!frame.necessary) keptOfBoth.reset();
+      if (frame.necessary && (!keptOfBoth || std::abs(frame.cosine - *keptOfBoth) > kCoherence[i])) {
+        shares.both[i] += one;
+        keptOfBoth = frame.cosine;
+      }
+    }
+  }
+  return shares;
+}
 
 void measureThesis(Device& device, const Context& context, const FrameOptions& options, int repeat,
                    Report& report) {
