@@ -13,12 +13,10 @@
 #include "capture/material.h"
 #include "capture/write.h"
 #include "common/error.h"
-#include "compare_runs.h"
 #include "frame_errors.h"
-#include "names.h"
 #include "reference/reference.h"
+#include "results.h"
 #include "scene/scene.h"
-#include "submission.h"
 #include "thesis.h"
 
 namespace pellucid::bench {

@@ -28,6 +28,8 @@ void warmUp(const harness::Device& device, double once, const Run& run) {
   for (int i = 0; i < 2 || Clock::now() - start < least; ++i) run();
 }
 
+}  // namespace
+
 Time percentiles(std::vector<double> times) {
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
@@ -35,8 +37,6 @@ Time percentiles(std::vector<double> times) {
   };
   return {at(0.5), at(0.1), at(0.9)};
 }
-
-}  // namespace
 
 std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t parts,
                                const std::function<void(VkCommandBuffer, uint32_t)>& record) {

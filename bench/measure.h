@@ -14,6 +14,8 @@ struct Time {
   double median, low, high;  // microseconds; low and high: 10th and 90th percentile
 };
 
+Time percentiles(std::vector<double> times);
+
 // Records `record` as often in one command buffer, with a compute barrier after each, as fills about ten
 // milliseconds (at most 256 times), and divides: the gaps between submissions do not count, and are too short
 // for the device to lower its clocks. `repeat` such command buffers are counted, after a second of some that

@@ -119,6 +119,7 @@ public:
 
   using Step = void (Steps::*)(VkCommandBuffer) const;
   Image outputOf(const std::vector<Step>& steps) const {
+    transmitted_->clear();
     frame_->device().run([&](VkCommandBuffer commandBuffer) {
       for (const Step step : steps) {
         (this->*step)(commandBuffer);
