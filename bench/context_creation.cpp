@@ -1,4 +1,4 @@
-#include "context_creation.h"
+#include "sections.h"
 
 #include <algorithm>
 #include <chrono>

@@ -152,34 +152,27 @@ struct Bench {
   }
 };
 
+// Of each scene, and their root mean square.
 void printScenes(Bench& bench, const std::vector<double>& radii) {
   std::printf("| scene, %d x %d pixels |", bench.size, bench.size);
   for (const double radius : radii) std::printf(" %g px |", radius);
   std::printf("\n|-|");
   for (size_t i = 0; i < radii.size(); ++i) std::printf("-|");
   std::printf("\n");
+  std::vector<double> squares(radii.size(), 0);
   for (const ErrorScene& scene : errorScenes()) {
     std::printf("| %s |", scene.title.c_str());
-    for (const double radius : radii) {
-      std::printf(" %.4f |", bench.error(scene, radius));
+    for (size_t i = 0; i < radii.size(); ++i) {
+      const double error = bench.error(scene, radii[i]);
+      squares[i] += error * error;
+      std::printf(" %.4f |", error);
       std::fflush(stdout);
     }
     std::printf("\n");
   }
-}
-
-// Root mean squares over the scenes.
-void printMeans(Bench& bench, const std::vector<double>& radii) {
-  std::printf("|");
-  for (const double radius : radii) {
-    double squares = 0;
-    for (const ErrorScene& scene : errorScenes()) {
-      const double error = bench.error(scene, radius);
-      squares += error * error;
-    }
-    std::printf(" %.5f |", std::sqrt(squares / static_cast<double>(errorScenes().size())));
-    std::fflush(stdout);
-  }
+  std::printf("| root mean square |");
+  for (const double sum : squares)
+    std::printf(" %.5f |", std::sqrt(sum / static_cast<double>(errorScenes().size())));
   std::printf("\n");
 }
 
@@ -222,7 +215,7 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
 int main(int argc, char** argv) {
   std::string device;
   int size = 96, pixels = std::numeric_limits<int>::max();
-  bool table = false, check = false, means = false;
+  bool table = false, check = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
   CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",
                "pellucid_diffusion_error");
@@ -233,7 +226,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(16, 1000000));
   app.add_flag("--table", table, "print bench/diffusion_error_table.h instead");
   app.add_flag("--check", check, "compare with it instead; 1 if an error is exceeded by a tenth");
-  app.add_flag("--mean", means, "print the root mean squares over the scenes instead");
   app.add_option("--radius", radii, "pixels within which 99.9 % of the energy lies; several with commas")
       ->delimiter(',')
       ->check(CLI::Range(0.01, 1000.0))
@@ -241,9 +233,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     Bench bench(device, size, pixels);
-    if (means)
-      printMeans(bench, radii);
-    else if (table)
+    if (table)
       printTable(bench, radii);
     else if (check)
       return holdsTable(bench, radii) ? 0 : 1;

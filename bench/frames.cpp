@@ -1,4 +1,4 @@
-#include "frames.h"
+#include "sections.h"
 
 #include <algorithm>
 #include <chrono>

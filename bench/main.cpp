@@ -7,11 +7,9 @@
 #include "commit.h"
 #include "common/error.h"
 #include "common/whole_file.h"
-#include "context_creation.h"
-#include "frames.h"
 #include "options.h"
 #include "results.h"
-#include "thesis.h"
+#include "sections.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "compute_pass.h"
+#include "bench_frame.h"
 
 namespace pellucid::bench {
 

@@ -1,10 +1,12 @@
-#include "thesis.h"
+#include "sections.h"
 
 #include <cmath>
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -43,13 +45,24 @@ namespace {
 constexpr int kFrames = 5000, kHeadTurns = 2, kLightTurns = 5;
 constexpr int kTimed = 12, kTimedSoftware = 4;  // frames, evenly apart, whose passes are timed
 
-// Mean microseconds of each pass; those of translucency average only the frames that have some.
-struct Passes {
-  double gbuffer = 0, shadow = 0, lighting = 0, diffusion = 0;
-  double front = 0, back = 0, thickness = 0, transmittance = 0, both = 0, addition = 0;
-  double backFace = 0;           // the back-face pass that computes what comes through
-  double fused = 0;              // the module's one dispatch
-  double module[3] = {0, 0, 0};  // its whole frames, by kSamples
+// Microseconds of each pass in the frames that have the pass.
+class Passes {
+public:
+  void add(const std::string& name, double microseconds) {
+    if (times_[name].empty()) names_.push_back(name);
+    times_[name].push_back(microseconds);
+  }
+  const std::vector<std::string>& names() const { return names_; }
+  double mean(const std::string& name) const {
+    const auto found = times_.find(name);
+    if (found == times_.end()) throw DeviceError("no frame of the turntable has the pass \"" + name + "\"");
+    return std::accumulate(found->second.begin(), found->second.end(), 0.0) /
+           static_cast<double>(found->second.size());
+  }
+
+private:
+  std::map<std::string, std::vector<double>> times_;
+  std::vector<std::string> names_;  // in the order of the first frame
 };
 
 struct Row {
@@ -192,20 +205,12 @@ public:
   }
 
   Passes passes() {
-    Passes mean;
-    int withLight = 0;
+    Passes passes;
     for (int i = 0; i < timed_; ++i) {
       setFrame(i * kFrames / timed_);
-      addFrame(mean, withLight);
+      addFrame(passes);
     }
-    for (double* sum : {&mean.gbuffer, &mean.shadow, &mean.lighting, &mean.diffusion, &mean.front, &mean.back,
-                        &mean.module[0], &mean.module[1], &mean.module[2]})
-      *sum /= timed_;
-    if (withLight == 0) throw DeviceError("no frame of the turntable has light that comes through");
-    for (double* sum :
-         {&mean.thickness, &mean.transmittance, &mean.both, &mean.addition, &mean.backFace, &mean.fused})
-      *sum /= withLight;
-    return mean;
+    return passes;
   }
 
 private:
@@ -243,7 +248,7 @@ private:
     });
   }
 
-  void addFrame(Passes& sum, int& withLight) {
+  void addFrame(Passes& passes) {
     Capture capture = withMapsAlone(rasterizer_.draw(turned_, raster_)->capture());
     capture.albedo = {};
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
@@ -252,15 +257,17 @@ private:
     TargetPool targets(device_);
     const FrontTarget front(targets, raster_);
     device_.run([&](VkCommandBuffer commands) { front.record(commands, rasterizer_.uploaded(), view); });
-    sum.gbuffer +=
-        draw(*front.target, view, {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    passes.add("G-buffer", draw(*front.target, view,
+                                {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false}));
     const RenderTarget depth(device_, raster_.width, raster_.height, depthColors(reversed),
                              farDepth(reversed));
-    sum.front += draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    passes.add("front depth",
+               draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false}));
     const EarlierPass behind{&front.depthNormal(), &front.albedoObject()};
-    sum.back +=
-        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
-    addLight(sum, view, front);
+    passes.add(
+        "back depth",
+        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind));
+    addLight(passes, view, front);
 
     ReplaySettings whole;
     whole.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
@@ -270,17 +277,15 @@ private:
     };
     for (std::size_t i = 0; i < std::size(kSamples); ++i) {
       whole.translucency.gatherSamples = kSamples[i];
-      sum.module[i] += time(moduleVariant(frame(whole), "").record);
+      passes.add(nameOf(kSamples[i]), time(moduleVariant(frame(whole), "").record));
     }
     const auto thesis = std::make_shared<BenchFrame>(device_, context_, capture, linear(materials),
                                                      translucencyAlone(), inputs);
-    sum.diffusion += time(gaussianSum(thesis).record);
-    if (!isNecessary()) return;
-    ++withLight;
-    addTranslucency(sum, thesis, view, front);
+    passes.add("six Gaussians", time(gaussianSum(thesis).record));
+    if (isNecessary()) addTranslucency(passes, thesis, view, front);
   }
 
-  void addLight(Passes& sum, const DrawView& view, const FrontTarget& front) {
+  void addLight(Passes& passes, const DrawView& view, const FrontTarget& front) {
     const Light& light = model_.lights[0];
     TargetPool targets(device_);
     std::vector<DrawnMap> drawn;
@@ -294,16 +299,18 @@ private:
     const DrawView lightView{drawn[0].image.clipFromView, drawn[0].image.viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
-    sum.shadow += draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
+    passes.add("shadow map",
+               draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}));
     const IrradiancePass pass(device_);
     GpuImage irradiance(device_, raster_.width, raster_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
     irradiance.clear();
     const LitSurfaces surfaces{front.normalPlanar(), front.depthNormal(), irradiance, view};
-    sum.lighting += time(
-        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowsOf(drawn, raster_)); });
+    passes.add("lighting", time([&](VkCommandBuffer commands) {
+                 pass.record(commands, surfaces, light, shadowsOf(drawn, raster_));
+               }));
   }
 
-  void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
+  void addTranslucency(Passes& passes, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
                        const FrontTarget& front) {
     const Steps steps(frame);
     const Variant module = moduleVariant(frame, "");
@@ -314,19 +321,20 @@ private:
     const auto timeOf = [&](Steps::Step step) {
       return time([&](VkCommandBuffer commandBuffer) { (steps.*step)(commandBuffer); });
     };
-    sum.thickness += timeOf(&Steps::thickness);
-    sum.transmittance += timeOf(&Steps::transmittance);
-    sum.both += timeOf(&Steps::both);
-    sum.addition += timeOf(&Steps::addition);
-    sum.fused += time(module.record);
+    passes.add("thickness", timeOf(&Steps::thickness));
+    passes.add("transmittance", timeOf(&Steps::transmittance));
+    passes.add("both in one", timeOf(&Steps::both));
+    passes.add("addition", timeOf(&Steps::addition));
+    passes.add("Pellucid's one dispatch", time(module.record));
     const bool keepGreater = view.reversedDepth;
     const RenderTarget target(device_, raster_.width, raster_.height,
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
     const PlannedInputs planned{frame->run().plan(), frame->images(), constants};
-    sum.backFace +=
+    passes.add(
+        "back-face pass",
         draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-             {&front.depthNormal(), &front.albedoObject(), &planned});
+             {&front.depthNormal(), &front.albedoObject(), &planned}));
   }
 
   static void requireAgreement(const Image& module, const Image& steps) {
@@ -356,9 +364,12 @@ private:
 };
 
 std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
-  const double lit = p.gbuffer + p.shadow + p.lighting, diffused = lit + p.diffusion;
-  const double depths = p.front + p.back, all = depths + p.thickness + p.transmittance;
-  const double combined = depths + p.both, alternate = depths / 2 + p.both, add = p.addition;
+  const double lit = p.mean("G-buffer") + p.mean("shadow map") + p.mean("lighting");
+  const double diffused = lit + p.mean("six Gaussians"), front = p.mean("front depth"),
+               back = p.mean("back depth");
+  const double depths = front + back, thickness = p.mean("thickness"), both = p.mean("both in one");
+  const double all = depths + thickness + p.mean("transmittance");
+  const double combined = depths + both, alternate = depths / 2 + both, add = p.mean("addition");
   return {
       {"5.1", 1, "baseline: shadow map, diffuse lighting", lit, 540},
       {"5.1", 2, "1 + six Gaussians (Jimenez 2009)", diffused, 304},
@@ -369,9 +380,9 @@ std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
       {"5.1", 7, "4 + coherence .005", diffused + s.both[0] * all + s.necessary * add, 266},
       {"5.1", 8, "4 + coherence .01", diffused + s.both[1] * all + s.necessary * add, 282},
       {"5.2", 1, "all of transmittance", diffused + all + add, 222},
-      {"5.2", 2, "1 less the transmittance shader", diffused + depths + p.thickness, 239},
+      {"5.2", 2, "1 less the transmittance shader", diffused + depths + thickness, 239},
       {"5.2", 3, "2 less the thickness shader", diffused + depths, 258},
-      {"5.2", 4, "3 less back depth", diffused + p.front, 278},
+      {"5.2", 4, "3 less back depth", diffused + front, 278},
       {"5.2", 5, "3 less all depths", diffused, 304},
       {"5.3", 1, "baseline", lit, 540},
       {"5.3", 2, "1 + six Gaussians (Jimenez 2009)", diffused, 304},
@@ -380,11 +391,12 @@ std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
       {"5.3", 5, "4 + depth maps on alternate frames", diffused + alternate + add, 261},
       {"5.3", 6, "4 + coherence .005", diffused + s.coherent[0] * combined + add, 265},
       {"5.3", 7, "all", diffused + s.both[0] * alternate + s.necessary * add, 296},
-      {"more", 0, "2 + transmittance in the back-face pass", diffused + p.backFace + add, 0},
-      {"more", 0, "2 + back depth, one dispatch of Pellucid", diffused + p.back + p.fused, 0},
-      {"more", 0, "1 + " + nameOf(kSamples[0]), lit + p.module[0], 0},
-      {"more", 0, "1 + " + nameOf(kSamples[1]), lit + p.module[1], 0},
-      {"more", 0, "1 + " + nameOf(kSamples[2]), lit + p.module[2], 0},
+      {"more", 0, "2 + transmittance in the back-face pass", diffused + p.mean("back-face pass") + add, 0},
+      {"more", 0, "2 + back depth, one dispatch of Pellucid",
+       diffused + back + p.mean("Pellucid's one dispatch"), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[0]), lit + p.mean(nameOf(kSamples[0])), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[1]), lit + p.mean(nameOf(kSamples[1])), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[2]), lit + p.mean(nameOf(kSamples[2])), 0},
   };
 }
 
@@ -457,15 +469,9 @@ void measureThesis(Device& device, const Context& context, const FrameOptions& o
       kFrames, shares.necessary, shares.coherent[0], shares.coherent[1], shares.both[0], shares.both[1]);
   report.note(text);
   const Passes passes = bench.passes();
-  const std::pair<const char*, double> parts[] = {
-      {"G-buffer", passes.gbuffer},        {"shadow map", passes.shadow},
-      {"lighting", passes.lighting},       {"six Gaussians", passes.diffusion},
-      {"front depth", passes.front},       {"back depth", passes.back},
-      {"thickness", passes.thickness},     {"transmittance", passes.transmittance},
-      {"both in one", passes.both},        {"addition", passes.addition},
-      {"back-face pass", passes.backFace}, {"Pellucid's one dispatch", passes.fused}};
-  for (const auto& [name, microseconds] : parts) {
-    std::snprintf(text, sizeof text, "  %-34s %9.1f", name, microseconds);
+  for (const std::string& name : passes.names()) {
+    const double microseconds = passes.mean(name);
+    std::snprintf(text, sizeof text, "  %-34s %9.1f", name.c_str(), microseconds);
     report.note(text);
     report.record({{"table", "passes"}, {"name", name}, {"us", microseconds}});
   }
