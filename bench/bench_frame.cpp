@@ -1,13 +1,64 @@
 #include "bench_frame.h"
 
-#include <set>
-#include <utility>
+#include <algorithm>
 
 #include "common/error.h"
 
 namespace pellucid::bench {
 
 using namespace harness;
+
+namespace {
+
+constexpr uint32_t kPushBytes = 16;
+
+std::vector<VkDescriptorSetLayoutBinding> layoutBindings(const std::vector<VkDescriptorType>& types) {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (uint32_t i = 0; i < types.size(); ++i)
+    bindings.push_back({i, types[i], 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+  return bindings;
+}
+
+}  // namespace
+
+ComputePass::ComputePass(Device& device, std::span<const uint32_t> spirv,
+                         const std::vector<VkDescriptorType>& types, const Tile& tile)
+    : types_(types),
+      tile_(tile),
+      sampler_(device),
+      layout_(device, layoutBindings(types), {VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushBytes}),
+      pipeline_(device) {
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+  check(vkCreateSampler(device.handle(), &info, nullptr, sampler_.receive()), "vkCreateSampler");
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < tile.specialization.size(); ++i) entries.push_back({i, 4 * i, 4});
+  createPipeline(
+      device, layout_, {spirv.data(), spirv.size_bytes()},
+      {static_cast<uint32_t>(entries.size()), entries.data(), 4 * entries.size(), tile.specialization.data()},
+      pipeline_);
+}
+
+void ComputePass::record(VkCommandBuffer commandBuffer, int width, int height,
+                         const std::vector<Resource>& resources, const std::array<uint32_t, 4>& push) const {
+  DescriptorWrites writes;
+  for (uint32_t i = 0; i < resources.size(); ++i)
+    if (const auto* image = std::get_if<PellucidImage>(&resources[i]))
+      writes.image(i, types_[i], sampler_, *image);
+    else
+      writes.buffer(i, types_[i], std::get<VkDescriptorBufferInfo>(resources[i]));
+  vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
+  layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, writes.all());
+  vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushBytes, push.data());
+  const auto groups = [](int size, uint32_t tile) { return (static_cast<uint32_t>(size) + tile - 1) / tile; };
+  vkCmdDispatch(commandBuffer, groups(width, tile_.width), groups(height, tile_.height), 1);
+}
+
+Image outputOf(Device& device, const Variant& variant) {
+  device.run(variant.record);
+  return variant.output();
+}
 
 BenchFrame::BenchFrame(Device& device, const Context& context, const Capture& capture,
                        const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
@@ -19,8 +70,10 @@ BenchFrame::BenchFrame(Device& device, const Context& context, const Capture& ca
       run_(inputs ? FrameRun(device, context, capture, materials, settings, inputs)
                   : FrameRun(device, context, capture, materials, settings)),
       constants_(device, run_.plan().constantsSize,
-                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+      bindings_(PELLUCID_MAX_BINDINGS) {
   writeConstants();
+  bindings_.resize(pellucidGetBindings(&run_.plan(), 0, bindings_.data()));
 }
 
 void BenchFrame::writeConstants() const {
@@ -29,44 +82,16 @@ void BenchFrame::writeConstants() const {
             run_.frame(), "constants");
 }
 
-std::vector<PellucidBinding> BenchFrame::bindings(uint32_t dispatch) const {
-  std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
-  all.resize(pellucidGetBindings(&run_.plan(), dispatch, all.data()));
-  return all;
+const PellucidBinding* BenchFrame::find(uint32_t binding) const {
+  const auto found = std::find_if(bindings_.begin(), bindings_.end(),
+                                  [&](const PellucidBinding& b) { return b.binding == binding; });
+  return found == bindings_.end() ? nullptr : &*found;
 }
 
-std::optional<PellucidBinding> BenchFrame::find(uint32_t binding) const {
-  for (const PellucidBinding& b : bindings(0))
-    if (b.binding == binding) return b;
-  return std::nullopt;
-}
-
-uint64_t BenchFrame::modeledBytes(uint32_t dispatch) const {
-  const PellucidFrame& frame = run_.frame();
-  PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];  // no frame of the bench has a history
-  uint32_t count = PELLUCID_MAX_TRANSIENTS;
-  requireOk(pellucidGetImageNeeds(&frame, &count, needs), frame, "needs");
-  const uint64_t pixels = static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
-  const auto bytesOf = [&](uint32_t resource) -> uint64_t {
-    const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
-    if (transient < count) return needs[transient].bytes;
-    if (resource == PELLUCID_RESOURCE_MATERIAL) return pixels;
-    if (resource == PELLUCID_RESOURCE_IRRADIANCE || resource == PELLUCID_RESOURCE_OUTPUT)
-      return pixels * (frame.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT ? 16 : 8);
-    return 4 * pixels;  // depths, maps as large as the image, normals, albedo
-  };
-  std::set<std::pair<uint32_t, VkDescriptorType>> images;
-  for (const PellucidBinding& b : bindings(dispatch))
-    if (b.resource != PELLUCID_RESOURCE_CONSTANTS) images.insert({b.resource, b.type});
-  uint64_t bytes = 0;
-  for (const auto& [resource, type] : images) bytes += bytesOf(resource);
-  return bytes;
-}
-
-bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding).has_value(); }
+bool BenchFrame::isPlanned(uint32_t binding) const { return find(binding) != nullptr; }
 
 Resource BenchFrame::planned(uint32_t binding) const {
-  const std::optional<PellucidBinding> b = find(binding);
+  const PellucidBinding* b = find(binding);
   if (!b) throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
   if (b->resource == PELLUCID_RESOURCE_CONSTANTS)
     return VkDescriptorBufferInfo{constants_.handle(), b->offset, b->size};
@@ -79,22 +104,23 @@ std::shared_ptr<GpuImage> BenchFrame::image(VkFormat format) const {
   return result;
 }
 
+std::uint64_t BenchFrame::bytesOf(std::uint64_t images) const {
+  return images * 8 * static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_);
+}
+
 Variant moduleVariant(const std::shared_ptr<const BenchFrame>& frame, const std::string& name) {
   const PellucidPlan& plan = frame->run().plan();
-  double bytes = 0;
   PellucidImageNeed needs[PELLUCID_MAX_TRANSIENTS];  // no frame of the bench has a history
   uint32_t count = PELLUCID_MAX_TRANSIENTS;
   requireOk(pellucidGetImageNeeds(&frame->images(), &count, needs), frame->images(), name);
   uint64_t transients = 0;
   for (uint32_t i = 0; i < count; ++i) transients += needs[i].bytes;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) bytes += static_cast<double>(frame->modeledBytes(i));
   return {name,
           plan.dispatchCount,
           plan.barrierCount,
-          bytes / (static_cast<double>(frame->width()) * frame->height()),
+          transients,
           [frame](VkCommandBuffer commandBuffer) { frame->run().record(commandBuffer); },
-          [frame] { return rgb(frame->run().output()); },
-          transients};
+          [frame] { return rgb(frame->run().output()); }};
 }
 
 }  // namespace pellucid::bench

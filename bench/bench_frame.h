@@ -1,17 +1,67 @@
-// A frame on the device for passes that are not the module's: they read the images and constants that the
-// module's plan binds.
+// Passes that are not the module's, and a frame on the device for them: they read the images and constants
+// that the module's plan binds.
 #pragma once
 
+#include <array>
+#include <functional>
 #include <memory>
-#include <optional>
+#include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
+#include "common/barrier.h"
 #include "common/gpu_image.h"
-#include "compute_pass.h"
+#include "common/push_layout.h"
 #include "replay/replay.h"
-#include "variant.h"
 
 namespace pellucid::bench {
+
+// What a binding holds.
+using Resource = std::variant<PellucidImage, VkDescriptorBufferInfo>;
+
+// How many pixels one workgroup does, and the constants 0.. that say so to the shader.
+struct Tile {
+  uint32_t width = 8, height = 8;
+  std::vector<uint32_t> specialization = {};
+};
+
+class ComputePass {
+public:
+  // types[i] is binding i of set 0. Combined image samplers are linear and clamp to the edge. The shader may
+  // have four words of push constants.
+  ComputePass(harness::Device& device, std::span<const uint32_t> spirv,
+              const std::vector<VkDescriptorType>& types, const Tile& tile = {});
+
+  // Without a barrier.
+  void record(VkCommandBuffer commandBuffer, int width, int height, const std::vector<Resource>& resources,
+              const std::array<uint32_t, 4>& push = {}) const;
+
+private:
+  std::vector<VkDescriptorType> types_;
+  Tile tile_;
+  harness::Owned<VkSampler, vkDestroySampler> sampler_;
+  harness::PushLayout layout_;
+  harness::Pipeline pipeline_;
+};
+
+// What one dispatch writes, the next may read and overwrite.
+inline void computeBarrier(VkCommandBuffer commandBuffer) {
+  harness::barrier(commandBuffer, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
+                   harness::kComputing);
+}
+
+// A way to do a part of the frame, the module's or another, as the tables compare them.
+struct Variant {
+  std::string name;
+  uint32_t dispatches, barriers;
+  std::uint64_t transientBytes;                 // of its images between dispatches
+  std::function<void(VkCommandBuffer)> record;  // the barriers within, none around
+  std::function<harness::Image()> output;       // RGB; after a run
+};
+
+// Of a run.
+harness::Image outputOf(harness::Device& device, const Variant& variant);
 
 class BenchFrame {
 public:
@@ -30,27 +80,25 @@ public:
   Resource planned(uint32_t binding) const;
   bool isPlanned(uint32_t binding) const;
 
-  // Least device-memory traffic of a dispatch of the plan: each image that it binds is read or written once.
-  // Formats that the module does not know are the common ones.
-  uint64_t modeledBytes(uint32_t dispatch) const;
-
   // The plan's constants, anew.
   void writeConstants() const;
 
   const harness::FrameRun& run() const { return run_; }
 
   // A cleared image of the frame's size.
-  std::shared_ptr<harness::GpuImage> image(VkFormat format) const;
+  std::shared_ptr<harness::GpuImage> image(VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT) const;
+  // Of so many images of the default format.
+  std::uint64_t bytesOf(std::uint64_t images) const;
 
 private:
-  std::vector<PellucidBinding> bindings(uint32_t dispatch) const;
-  std::optional<PellucidBinding> find(uint32_t binding) const;
+  const PellucidBinding* find(uint32_t binding) const;
 
   harness::Device& device_;
   int width_, height_;
   PellucidMaterial material_;
   harness::FrameRun run_;
   harness::HostBuffer constants_;
+  std::vector<PellucidBinding> bindings_;  // of the first dispatch
 };
 
 // The module's own way: all of the frame's plan.

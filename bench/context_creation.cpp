@@ -1,18 +1,13 @@
-#include "context_creation.h"
-
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include "sections.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
-#include <random>
-#include <sstream>
 
 #include "common/error.h"
 #include "replay/replay.h"
@@ -27,96 +22,62 @@ struct Cost {
   double wall, cpu;  // microseconds
 };
 
-using Environment = std::map<std::string, std::string>;
+using Environment = std::vector<std::string>;
 
 // NVIDIA's and Mesa's.
-const Environment kWithoutCache = {{"__GL_SHADER_DISK_CACHE", "0"}, {"MESA_SHADER_CACHE_DISABLE", "true"}};
+const Environment kWithoutCache = {"__GL_SHADER_DISK_CACHE=0", "MESA_SHADER_CACHE_DISABLE=true"};
 
-Environment cacheIn(const std::filesystem::path& folder) {
-  return {{"__GL_SHADER_DISK_CACHE", "1"},
-          {"__GL_SHADER_DISK_CACHE_PATH", folder},
-          {"MESA_SHADER_CACHE_DISABLE", "false"},
-          {"MESA_SHADER_CACHE_DIR", folder}};
+Environment cacheIn(const std::string& folder) {
+  return {"__GL_SHADER_DISK_CACHE=1", "__GL_SHADER_DISK_CACHE_PATH=" + folder,
+          "MESA_SHADER_CACHE_DISABLE=false", "MESA_SHADER_CACHE_DIR=" + folder};
 }
 
 // Gone with what is in it.
-class TemporaryFolder {
-public:
-  TemporaryFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("pellucid_bench-" + std::to_string(getpid()) + "-" + std::to_string(std::random_device{}()))) {
-    std::filesystem::create_directories(path_);
+struct TemporaryFolder {
+  std::string path = (std::filesystem::temp_directory_path() / "pellucid_bench-XXXXXX").string();
+  TemporaryFolder() {
+    if (!mkdtemp(path.data())) throw InputError(path, "", "cannot be made");
   }
   ~TemporaryFolder() {
     std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
+    std::filesystem::remove_all(path, ignored);
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
-private:
-  std::filesystem::path path_;
 };
 
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  for (std::string& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-// This program's process with these arguments and variables; what it printed.
-std::string output(std::vector<std::string> arguments, const Environment& variables) {
-  std::vector<std::string> environment;
-  for (char** entry = environ; *entry; ++entry) {
-    const std::string text = *entry;
-    if (variables.count(text.substr(0, text.find('='))) == 0) environment.push_back(text);
+// Adds a word to a command of the shell.
+void addWord(std::string& command, const std::string& word) {
+  command += " '";
+  for (const char c : word) {
+    if (c == '\'') command += "'\\'";  // ends the quotes, and begins them again
+    command += c;
   }
-  for (const auto& [name, value] : variables) environment.push_back(name + "=" + value);
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe");
-  arguments.insert(arguments.begin(), self);
-
-  int ends[2];
-  if (pipe(ends) != 0) throw DeviceError("no pipe to a process that creates a context");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addclose(&actions, ends[0]);
-  pid_t process;
-  const int failure = posix_spawn(&process, self.c_str(), &actions, nullptr, pointers(arguments).data(),
-                                  pointers(environment).data());
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  std::string text;
-  char buffer[256];
-  for (ssize_t n; failure == 0 && (n = read(ends[0], buffer, sizeof buffer)) > 0;)
-    text.append(buffer, static_cast<size_t>(n));
-  close(ends[0]);
-  int status = 0;
-  if (failure != 0 || waitpid(process, &status, 0) != process || status != 0)
-    throw DeviceError("a process that creates a context failed: " + self);
-  return text;
+  command += "'";
 }
 
+// What a process of this program with these arguments and variables says.
 Cost createdBy(std::vector<std::string> arguments, const std::string& device, const Environment& variables) {
   arguments.push_back("--create-context");
   if (!device.empty()) arguments.insert(arguments.end(), {"--device", device});
-  std::istringstream text(output(arguments, variables));
+  std::string command = "env";
+  for (const std::string& variable : variables) addWord(command, variable);
+  addWord(command, std::filesystem::read_symlink("/proc/self/exe"));
+  for (const std::string& argument : arguments) addWord(command, argument);
+  std::FILE* const pipe = popen(command.c_str(), "r");
   Cost cost{};
-  if (!(text >> cost.wall >> cost.cpu))
-    throw DeviceError("a process that creates a context did not say its time");
+  const bool said = pipe && std::fscanf(pipe, "%lf %lf", &cost.wall, &cost.cpu) == 2;
+  if (!pipe || pclose(pipe) != 0 || !said)
+    throw DeviceError("a process that creates a context failed: " + command);
   return cost;
 }
 
-void add(Report& report, const std::string& name, std::vector<Cost> costs) {
-  std::sort(costs.begin(), costs.end(), [](const Cost& a, const Cost& b) { return a.wall < b.wall; });
-  const auto at = [&](double share) {
-    return costs[static_cast<size_t>(share * static_cast<double>(costs.size() - 1) + 0.5)];
-  };
-  report.add({name, 0, 0, 0, {}, {{"cpu_us", at(0.5).cpu}, {"processes", costs.size()}}},
-             {at(0.5).wall, at(0.1).wall, at(0.9).wall});
+void add(Report& report, const std::string& name, const std::vector<Cost>& costs) {
+  std::vector<double> walls, cpus;
+  for (const Cost& cost : costs) {
+    walls.push_back(cost.wall);
+    cpus.push_back(cost.cpu);
+  }
+  report.add({name, 0, 0, 0, {}, {{"cpu_us", percentiles(cpus).median}, {"processes", costs.size()}}},
+             percentiles(walls));
 }
 
 VkPipelineCache loadCache(const Device& device, const std::filesystem::path& path) {
@@ -180,9 +141,9 @@ void measureContextCreation(const std::string& device, int repeat, Report& repor
   constexpr std::uint32_t kDefaultFrame = PELLUCID_USE_GATHER | PELLUCID_USE_DIFFUSION;
   add(report, "no driver cache, uses of a default frame whose lights have maps",
       {createdBy({"--uses", std::to_string(kDefaultFrame)}, device, kWithoutCache)});
-  createdBy({}, device, cacheIn(folder.path()));
-  add(report, "driver cache", several({}, cacheIn(folder.path())));
-  const std::string file = folder.path() / "pipelines";
+  createdBy({}, device, cacheIn(folder.path));
+  add(report, "driver cache", several({}, cacheIn(folder.path)));
+  const std::string file = folder.path + "/pipelines";
   createdBy({"--save-cache", file}, device, kWithoutCache);
   add(report, "saved VkPipelineCache", several({"--load-cache", file}, kWithoutCache));
 }

@@ -6,6 +6,11 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "common/compare.h"
 #include "common/error.h"
@@ -13,12 +18,100 @@
 #include "pellucid/pellucid_material.h"
 #include "reference/reference.h"
 #include "replay/replay.h"
-#include "scene.h"
+#include "scene/scene.h"
 
 namespace {
 
 using namespace pellucid::harness;
-using namespace pellucid::bench;
+
+// A scene that the diffusion's errors are stated for.
+struct ErrorScene {
+  std::string title, scene;
+  std::map<std::string, double> options;
+  double width;  // visible, scene units
+  // If > 0, the irradiance is a checker of that side in the image, scene units, at 17 degrees.
+  double checker = 0;
+};
+
+std::vector<ErrorScene> errorScenes() {
+  const double plane = 40;
+  const std::map<std::string, double> tilted = {{"tilt", 60}};
+  return {
+      {"checker of 1/8 of the width, at 17 degrees", "checker", {{"cell", plane / 8}, {"angle", 17}}, plane},
+      {"step at 30 degrees", "step", {{"angle", 30}}, plane},
+      {"tilted by 60 degrees, step", "tilted", tilted, plane},
+      {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
+      {"tilted by 60 degrees, checker at 17 degrees",
+       "checker",
+       {{"cell", plane / 8}, {"angle", 17}, {"tilt", 60}},
+       plane},
+      {"sphere, lit from the side", "sphere", {{"lightAngle", 110}}, plane},
+      {"sphere, checker at 17 degrees", "sphere", {}, plane, plane / 8},
+      {"ear", "ear", {}, 92}};
+}
+
+// Of each pixel with a material, from 4 x 4 points of it.
+void paintChecker(Capture& capture, double side) {
+  constexpr double kAngle = 17 * std::numbers::pi / 180;
+  constexpr int kPoints = 4;
+  const double c = std::cos(kAngle) / side, s = std::sin(kAngle) / side;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x) {
+      int lit = 0;
+      for (int i = 0; i < kPoints * kPoints; ++i) {
+        const double u = x + (i % kPoints + 0.5) / kPoints, v = y + (i / kPoints + 0.5) / kPoints;
+        lit += static_cast<int>(std::floor(c * u + s * v) + std::floor(c * v - s * u)) % 2 == 0 ? 1 : 0;
+      }
+      const bool covered = capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
+                                            static_cast<size_t>(x)] != 0;
+      for (int k = 0; k < 3; ++k)
+        capture.irradiance.at(x, y)[k] = covered ? static_cast<float>(lit) / (kPoints * kPoints) : 0;
+    }
+}
+
+// `size` pixels a side; all lengths scaled so that a pixel is 1 mm wide where the scene has its width.
+Capture makeErrorCapture(const ErrorScene& scene, int size) {
+  SceneParameters p{.name = scene.scene, .width = size, .height = size, .options = scene.options};
+  if (scene.scene == "checker" || scene.scene == "step" || scene.scene == "tilted") p.options["samples"] = 4;
+  p.shadowSize = 0;
+  Capture capture = makeScene(p);
+  capture.metersPerUnit = 0.001 * size / scene.width;
+  if (scene.checker > 0) paintChecker(capture, scene.checker * size / scene.width);
+  capture.albedo = {};  // the error is the diffusion's
+  return capture;
+}
+
+// One value per pixel: 1 at about `count` of the pixels with a material, spread at random with a fixed seed;
+// at all where there are no more.
+std::vector<std::uint8_t> spreadPixels(const Capture& capture, int count) {
+  const auto covered =
+      std::count_if(capture.material.begin(), capture.material.end(), [](auto m) { return m != 0; });
+  std::mt19937 random(5);
+  std::vector<std::uint8_t> wanted;
+  for (const std::uint8_t material : capture.material) {
+    const bool chosen = random() % static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(covered, 1)) <
+                        static_cast<std::uint64_t>(count);
+    wanted.push_back(chosen && material != 0);
+  }
+  return wanted;
+}
+
+// Burley's profile (Christensen & Burley 2015) with 99.9 % of the energy within `radius` mm in red, and
+// distances 1/1.4 and 1/2 of that in green and blue.
+PellucidMaterial burleyMaterial(double radius) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  desc.kind = PELLUCID_MATERIAL_BURLEY;
+  // 3/4 e^{-r / 3d} = .001 - 1/4 e^{-r / d} holds at r = 19.86 d (Christensen & Burley 2015, the cdf).
+  const double d = radius / 19.86;
+  desc.burleyDistance[0] = d;
+  desc.burleyDistance[1] = d / 1.4;
+  desc.burleyDistance[2] = d / 2;
+  PellucidMaterial material;
+  if (pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr) != PELLUCID_OK)
+    throw InputError("", "burleyDistance", "does not compile");
+  return material;
+}
 
 // The largest channel's.
 double relativeRmse(const Image& image, const Image& truth, const std::vector<std::uint8_t>& pixels) {
@@ -38,7 +131,7 @@ struct Bench {
 
   // At a radius in pixels.
   double error(const ErrorScene& scene, double radius) {
-    const Capture capture = makeErrorCapture(scene, size, 1);
+    const Capture capture = makeErrorCapture(scene, size);
     const PellucidMaterial material = burleyMaterial(radius);
     reference::Settings settings;
     settings.features = PELLUCID_FEATURE_DIFFUSION;
@@ -59,34 +152,27 @@ struct Bench {
   }
 };
 
+// Of each scene, and their root mean square.
 void printScenes(Bench& bench, const std::vector<double>& radii) {
   std::printf("| scene, %d x %d pixels |", bench.size, bench.size);
   for (const double radius : radii) std::printf(" %g px |", radius);
   std::printf("\n|-|");
   for (size_t i = 0; i < radii.size(); ++i) std::printf("-|");
   std::printf("\n");
+  std::vector<double> squares(radii.size(), 0);
   for (const ErrorScene& scene : errorScenes()) {
     std::printf("| %s |", scene.title.c_str());
-    for (const double radius : radii) {
-      std::printf(" %.4f |", bench.error(scene, radius));
+    for (size_t i = 0; i < radii.size(); ++i) {
+      const double error = bench.error(scene, radii[i]);
+      squares[i] += error * error;
+      std::printf(" %.4f |", error);
       std::fflush(stdout);
     }
     std::printf("\n");
   }
-}
-
-// Root mean squares over the scenes.
-void printMeans(Bench& bench, const std::vector<double>& radii) {
-  std::printf("|");
-  for (const double radius : radii) {
-    double squares = 0;
-    for (const ErrorScene& scene : errorScenes()) {
-      const double error = bench.error(scene, radius);
-      squares += error * error;
-    }
-    std::printf(" %.5f |", std::sqrt(squares / static_cast<double>(errorScenes().size())));
-    std::fflush(stdout);
-  }
+  std::printf("| root mean square |");
+  for (const double sum : squares)
+    std::printf(" %.5f |", std::sqrt(sum / static_cast<double>(errorScenes().size())));
   std::printf("\n");
 }
 
@@ -129,7 +215,7 @@ bool holdsTable(Bench& bench, const std::vector<double>& radii) {
 int main(int argc, char** argv) {
   std::string device;
   int size = 96, pixels = std::numeric_limits<int>::max();
-  bool table = false, check = false, means = false;
+  bool table = false, check = false;
   std::vector<double> radii(std::begin(pellucid::kErrorRadii), std::end(pellucid::kErrorRadii));
   CLI::App app("Relative RMSE of the module's diffusion from brute force, worst channel.",
                "pellucid_diffusion_error");
@@ -140,7 +226,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(16, 1000000));
   app.add_flag("--table", table, "print bench/diffusion_error_table.h instead");
   app.add_flag("--check", check, "compare with it instead; 1 if an error is exceeded by a tenth");
-  app.add_flag("--mean", means, "print the root mean squares over the scenes instead");
   app.add_option("--radius", radii, "pixels within which 99.9 % of the energy lies; several with commas")
       ->delimiter(',')
       ->check(CLI::Range(0.01, 1000.0))
@@ -148,9 +233,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     Bench bench(device, size, pixels);
-    if (means)
-      printMeans(bench, radii);
-    else if (table)
+    if (table)
       printTable(bench, radii);
     else if (check)
       return holdsTable(bench, radii) ? 0 : 1;

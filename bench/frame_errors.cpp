@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
+#include <functional>
 #include <random>
-#include <type_traits>
+#include <string_view>
 #include <utility>
 
 #include "common/compare.h"
-#include "common/error.h"
 #include "common/parallel.h"
 #include "common/whole_file.h"
 #include "metrics/eye.h"
@@ -28,60 +27,31 @@ constexpr unsigned kSeed = 37;
 // Share of the profile's energy that brute force leaves out: a tenth of the least error in the table.
 constexpr double kDiscarded = 1e-4;
 constexpr int kBox = 4;      // pixels a side of the averages that `pellucid evaluate` compares
-constexpr int kVersion = 1;  // of what the hash stands for
+constexpr int kVersion = 2;  // of what the hash stands for
 
-// FNV-1a over words.
-class Hash {
-public:
-  template <class Value>
-  void add(const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    bytes(&value, sizeof value);
-  }
-  template <class Value>
-  void add(const std::vector<Value>& values) {
-    add(values.size());
-    bytes(values.data(), values.size() * sizeof(Value));
-  }
-  std::uint64_t value() const { return value_; }
-
-private:
-  void bytes(const void* data, size_t size) {
-    const auto* p = static_cast<const unsigned char*>(data);
-    for (; size >= 8; size -= 8, p += 8) {
-      std::uint64_t word;
-      std::memcpy(&word, p, 8);
-      word_(word);
-    }
-    for (; size > 0; --size) word_(*p++);
-  }
-  void word_(std::uint64_t word) {
-    value_ = (value_ ^ word) * 1099511628211u;
-    value_ ^= value_ >> 29;  // a multiplication alone never moves high bits down
-  }
-
-  std::uint64_t value_ = 14695981039346656037u;
-};
-
-std::uint64_t hashOf(const Capture& c, const std::vector<PellucidMaterial>& materials, int count) {
-  Hash hash;
-  hash.add(kVersion);
-  hash.add(kSeed);
-  hash.add(kDiscarded);
-  hash.add(count);
-  hash.add(c.width);
-  hash.add(c.height);
-  hash.add(c.metersPerUnit);
-  hash.add(c.clipFromView);
-  hash.add(c.viewFromWorld);
-  hash.add(c.frontDepth.encoding);
-  hash.add(c.frontDepth.image.data);
-  hash.add(c.normalsInViewSpace);
-  hash.add(c.normal.data);
-  hash.add(c.irradiance.data);
-  hash.add(c.material);
-  hash.add(materials);
-  return hash.value();
+// Of all that the diffusion depends on.
+size_t hashOf(const Capture& c, const std::vector<PellucidMaterial>& materials, int count) {
+  size_t hash = 0;
+  const auto add = [&](const auto* values, size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(values), size * sizeof *values);
+    hash = 31 * hash + std::hash<std::string_view>()(bytes);
+  };
+  const int numbers[] = {kVersion,
+                         static_cast<int>(kSeed),
+                         count,
+                         c.width,
+                         c.height,
+                         static_cast<int>(c.frontDepth.encoding),
+                         c.normalsInViewSpace};
+  add(numbers, std::size(numbers));
+  for (const double& number : {kDiscarded, c.metersPerUnit}) add(&number, 1);
+  add(c.clipFromView.data(), c.clipFromView.size());
+  add(c.viewFromWorld.data(), c.viewFromWorld.size());
+  for (const Image* image : {&c.frontDepth.image, &c.normal, &c.irradiance})
+    add(image->data.data(), image->data.size());
+  add(c.material.data(), c.material.size());
+  add(materials.data(), materials.size());
+  return hash;
 }
 
 std::vector<std::uint32_t> choosePixels(const Capture& c, int count) {
@@ -154,20 +124,13 @@ DiffusionTruth diffusionTruth(const Capture& capture, const std::vector<Pellucid
   if (truth.pixels.empty()) return truth;
   std::filesystem::path path;
   if (!cache.empty()) {
-    char name[64];
-    std::snprintf(name, sizeof name, "diffusion-%016llx.json",
-                  static_cast<unsigned long long>(hashOf(capture, materials, count)));
-    path = cache / name;
+    path = cache / ("diffusion-" + std::to_string(hashOf(capture, materials, count)) + ".json");
     if (const auto cached = readCached(path, truth.pixels)) return *cached;
   }
   truth.values = bruteForce(capture, materials, truth.pixels);
   if (!cache.empty()) {
     std::filesystem::create_directories(cache);
-    writeWhole(path, [&](const std::filesystem::path& file) {
-      std::ofstream out(file);
-      out << nlohmann::json{{"pixels", truth.pixels}, {"values", truth.values}};
-      if (!out.flush()) throw InputError(path.string(), "", "cannot be written");
-    });
+    writeWholeText(path, nlohmann::json{{"pixels", truth.pixels}, {"values", truth.values}}.dump());
   }
   return truth;
 }

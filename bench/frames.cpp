@@ -1,4 +1,4 @@
-#include "frames.h"
+#include "sections.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,9 +9,9 @@
 #include "baselines/whole_frames.h"
 #include "bench_frame.h"
 #include "capture/material.h"
-#include "diffusions.h"
-#include "floor.h"
+#include "common/error.h"
 #include "frame_errors.h"
+#include "kFloor.h"
 #include "measure.h"
 #include "names.h"
 #include "scene.h"
@@ -23,6 +23,8 @@ using namespace harness;
 namespace {
 
 static_assert(kSamples[1] == kDefaultGatherSamples);
+
+constexpr double kWrong = 0.5;  // relative RMSE of a diffusion that is not worth timing
 
 // Microseconds.
 template <class Call>
@@ -36,6 +38,81 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// The floor: microseconds of one pass over the depths, the irradiance and the output of a capture, in the
+// fastest of several workgroup shapes. Throws DeviceError when a pass wrote something else than its inputs
+// say: a floor that skips work would be no floor.
+double measureFloor(Device& device, const Capture& capture, int repeat) {
+  struct Shape {
+    uint32_t width, height, pixels;  // of a group in threads; pixels of each thread
+  };
+  constexpr Shape kShapes[] = {{8, 8, 1}, {16, 16, 1}, {32, 8, 1}, {8, 8, 2}, {16, 16, 2}, {32, 8, 2}};
+  constexpr float kRounding = 4e-3f;  // of halves up to 4, twice: of the irradiance and of the sum
+  constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  const int width = capture.width, height = capture.height;
+  GpuImage front(device, width, height, VK_FORMAT_R32_SFLOAT),
+      back(device, width, height, VK_FORMAT_R32_SFLOAT);
+  GpuImage irradiance(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);
+  GpuImage result(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);
+  front.upload(capture.frontDepth.image);
+  back.upload(capture.backDepth.image);
+  irradiance.upload(capture.irradiance);
+  Image right = capture.irradiance;
+  for (size_t i = 0; i < right.data.size(); ++i)
+    right.data[i] += capture.backDepth.image.data[i / 3] - capture.frontDepth.image.data[i / 3];
+  double fastest = INFINITY;
+  for (const Shape& s : kShapes) {
+    const ComputePass pass(device, kFloor, {kRead, kRead, kRead, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                           {s.width * s.pixels, s.height, {s.width, s.height, s.pixels}});
+    result.clear();
+    const Time time = measure(device, repeat, [&](VkCommandBuffer commandBuffer) {
+      pass.record(commandBuffer, width, height, {front.use(), back.use(), irradiance.use(), result.use()});
+    });
+    fastest = std::min(fastest, time.median);
+    const Image written = rgb(result.download());
+    if (!std::equal(written.data.begin(), written.data.end(), right.data.begin(), right.data.end(),
+                    [](float a, float b) { return std::abs(a - b) < kRounding; }))
+      throw DeviceError("the floor pass wrote something else than its inputs say");
+  }
+  return fastest;
+}
+
+struct TimedError {
+  std::string name;
+  double error, time;  // relative RMSE; microseconds
+};
+
+// A logarithmic axis from decade to decade.
+Axis decades(const std::string& label, const std::vector<TimedError>& points, double TimedError::*value) {
+  const auto [low, high] =
+      std::minmax_element(points.begin(), points.end(),
+                          [&](const TimedError& a, const TimedError& b) { return a.*value < b.*value; });
+  return {label, true, std::pow(10, std::floor(std::log10(*low.*value))),
+          std::pow(10, std::ceil(std::log10(*high.*value)))};
+}
+
+// A family of variants is a color: what stands before the comma of its members' names. `from`: what errors
+// are from.
+Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points,
+                      const std::string& from) {
+  const Color colors[] = {{200, 30, 30},  {30, 90, 200},  {20, 140, 60},
+                          {150, 80, 160}, {220, 140, 20}, {80, 80, 80}};
+  Plot plot;
+  plot.title = title;
+  plot.x = decades("relative RMSE from " + from, points, &TimedError::error);
+  plot.y = decades("microseconds", points, &TimedError::time);
+  for (const TimedError& p : points) {
+    const std::string family = p.name.substr(0, p.name.find(','));
+    auto series = std::find_if(plot.series.begin(), plot.series.end(),
+                               [&](const Series& s) { return s.name == family; });
+    if (series == plot.series.end())
+      series =
+          plot.series.insert(series, {family, colors[plot.series.size() % std::size(colors)], {}, {}, true});
+    series->x.push_back(p.error);
+    series->y.push_back(p.time);
+  }
+  return plot;
 }
 
 // One frame at one size.
@@ -116,8 +193,9 @@ private:
   void measureErrors() {
     const auto add = [&](const Variant& v) {
       if (truth_.pixels.empty()) return;
-      device_.run(v.record);
-      errors_[v.name] = diffusionErrors(v.output(), truth_);
+      errors_[v.name] = diffusionErrors(outputOf(device_, v), truth_);
+      if (!(rootMeanSquare(errors_[v.name]) < kWrong))
+        throw DeviceError(v.name + " does not diffuse " + capture_.name);
     };
     add(moduleVariant(frame(alone(PELLUCID_FEATURE_DIFFUSION)), kModule));
     for (const Variant& v : diffusionsOfOthers_) add(v);
@@ -131,23 +209,19 @@ private:
   // capture's truth.
   void add(const std::string& kind, const Variant& v, const Time& time, const std::string& diffusion,
            nlohmann::json more = nlohmann::json::object()) {
-    more.update(
-        {{"frame", capture_.name}, {"size", size()}, {"kind", kind}, {"transient_bytes", v.transientBytes}});
+    more.update({{"frame", capture_.name}, {"size", size()}, {"kind", kind}});
     std::optional<double> error;
     if (const auto found = errors_.find(diffusion); found != errors_.end()) {
       error = rootMeanSquare(found->second);
       more["relative_rmse_rgb"] = found->second;
     }
-    if (kind == "whole" && capture_.truth) {
-      device_.run(v.record);
-      more.update(errorFields(v.output(), capture_));
-    }
+    if (kind == "whole" && capture_.truth) more.update(errorFields(outputOf(device_, v), capture_));
     if (kind == "whole") {
       const auto against = more.find("truth_relative_rmse");
       const std::optional<double> shown = against != more.end() ? against->get<double>() : error;
       if (shown) points_.push_back({v.name, *shown, std::max(time.median, 1.0)});
     }
-    report_.add({v.name, v.dispatches, v.barriers, v.bytesPerPixel, error, more}, time);
+    report_.add({v.name, v.dispatches, v.barriers, v.transientBytes, error, more}, time);
   }
 
   nlohmann::json hostTimes(const BenchFrame& f, std::vector<double> recordings) const {
@@ -171,12 +245,10 @@ private:
                      [&](VkCommandBuffer commandBuffer, uint32_t i) { f.run().record(commandBuffer, i); });
     for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
       const PellucidDispatch& d = plan.dispatches[i];
-      const double bytes =
-          static_cast<double>(f.modeledBytes(i)) / static_cast<double>(capture_.material.size());
       report_.add({"  " + std::to_string(i) + " " + d.name,
                    1,
                    d.barrierBefore,
-                   bytes,
+                   0,
                    {},
                    {{"frame", capture_.name}, {"size", size()}, {"kind", "dispatch"}, {"of", whole}}},
                   times[i]);
@@ -189,10 +261,8 @@ private:
     linear.albedo = {};
     const Variant turned = moduleVariant(
         std::make_shared<BenchFrame>(device_, context_, linear, materials_, settings), still.name);
-    device_.run(still.record);
-    const Image before = still.output();
-    device_.run(turned.record);
-    return flickerFields(before, turned.output(), capture_, *turned_);
+    const Image before = outputOf(device_, still);
+    return flickerFields(before, outputOf(device_, turned), capture_, *turned_);
   }
 
   void wholeFrame(uint32_t samples) {
@@ -209,9 +279,7 @@ private:
     if (turned_) more.update(flickerOf(v, whole));
     add("whole", v, time, kModule, more);
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "    transients %.1f bytes/pixel; CPU: plan %.1f us, constants %.1f us, record %.1f us",
-                  static_cast<double>(v.transientBytes) / static_cast<double>(capture_.material.size()),
+    std::snprintf(text, sizeof text, "    CPU: plan %.1f us, constants %.1f us, record %.1f us",
                   host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
                   host["cpu_record_us"].get<double>());
     report_.note(text);
@@ -269,10 +337,7 @@ std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Con
     FrameBench bench(device, context, options, repeat, source, report);
     const auto [floor, isNew] = floors.try_emplace(bench.size());
     if (isNew)
-      floor->second =
-          measureFloors(device, slab(bench.capture().width, bench.capture().height, 1, 0.1), repeat)
-              .front()
-              .time.median;
+      floor->second = measureFloor(device, slab(bench.capture().width, bench.capture().height), repeat);
     report.setFloor(floor->second);
     const std::vector<TimedError> points = bench.run(floor->second);
     if (!points.empty())

@@ -1,66 +1,21 @@
 // pellucid_bench: GPU times of the module and of others beside their errors. What is timed is checked first.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 
 #include "commit.h"
 #include "common/error.h"
-#include "compare_runs.h"
-#include "context_creation.h"
-#include "frames.h"
+#include "common/whole_file.h"
 #include "options.h"
-#include "path_flicker.h"
-#include "plane.h"
-#include "scene.h"
-#include "submission.h"
-#include "thesis.h"
+#include "results.h"
+#include "sections.h"
 
 namespace {
 
 using namespace pellucid::harness;
 using namespace pellucid::bench;
 using Json = nlohmann::json;
-
-Json readResults(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "", "cannot be read");
-  Json json = Json::parse(file, nullptr, false);
-  if (!json.is_object()) throw InputError(path.string(), "", "holds no results of pellucid_bench");
-  return json;
-}
-
-// One line a row, so that files of a thousand rows stay readable, and so do their differences.
-std::string textOf(Json json) {
-  const Json rows = std::move(json["results"]);
-  json.erase("results");
-  std::string text = json.dump(1);
-  text.resize(text.rfind('\n'));
-  text += ",\n \"results\": [";
-  for (size_t i = 0; i < rows.size(); ++i)
-    text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
-  return text + "\n ]\n}\n";
-}
-
-void write(Json json, const Options& options) {
-  if (options.ratios) {
-    json.erase("floor_us");
-    for (Json& row : json["results"])
-      for (const char* time : {"us", "p10_us", "p90_us", "floor_us", "cpu_us", "cpu_plan_us",
-                               "cpu_constants_us", "cpu_record_us"})
-        row.erase(time);
-  }
-  if (options.json == "-") {
-    std::fputs(textOf(std::move(json)).c_str(), stdout);
-  } else if (!options.json.empty()) {
-    std::ofstream file(options.json);
-    file << textOf(std::move(json));
-    if (!file.flush()) throw InputError(options.json, "", "cannot be written");
-  }
-}
 
 class Run {
 public:
@@ -116,19 +71,6 @@ private:
 
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
-    const PellucidMaterial material = benchMaterial();
-    const Site site{device_, context, material, pixelSizeFor(material, options_.plane.radius),
-                    options_.plane.errorPixels};
-    if (std::any_of(std::begin(kPlaneTables), std::end(kPlaneTables),
-                    [&](const char* name) { return wanted(name); })) {
-      const auto [width, height] = options_.plane.size;
-      const double radius = options_.plane.radius;
-      std::fprintf(table_, "planes of %d x %d, radius %g pixels\n", width, height, radius);
-      PlanePlots planes = measurePlanes(site, options_.tables, options_.plane, repeat_, report_);
-      plots_["diffusion"] = std::move(planes.diffusion);
-      json_.update(
-          {{"width", width}, {"height", height}, {"radius_pixels", radius}, {"floor_us", planes.floor}});
-    }
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
     if (wanted("paths"))
       for (auto& [name, plots] : measurePaths(device_, context, options_.frames, repeat_, report_))
@@ -153,11 +95,12 @@ int run(const Options& options) {
   // Before a run of minutes.
   const Json before = options.compare.empty() ? Json() : readResults(options.compare);
   const bool stored = !options.results.empty();
-  const Json now = stored ? readResults(options.results) : Run(options).measure([&](const Json& json) {
-    if (options.json != "-") write(json, options);
-  });
-  if (!stored) write(now, options);
-  if (!options.submit.empty()) writeSubmission(now, options.submit);
+  const auto keep = [&](const Json& json) {
+    if (!options.json.empty() && options.json != "-") writeResults(json, options.json, options.ratios);
+  };
+  const Json now = stored ? readResults(options.results) : Run(options).measure(keep);
+  if (!stored && !options.json.empty()) writeResults(now, options.json, options.ratios);
+  if (!options.submit.empty()) writeWholeText(options.submit, submission(now).dump(1) + "\n");
   if (options.compare.empty()) return 0;
   return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;
 }

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "compute_pass.h"
+#include "bench_frame.h"
 
 namespace pellucid::bench {
 
@@ -18,10 +18,6 @@ constexpr double kSlow = 100000;
 using Clock = std::chrono::steady_clock;
 Clock::time_point lastWork{};
 
-int passesFor(double microseconds, double most) {
-  return static_cast<int>(std::clamp(std::ceil(kSpan / std::max(microseconds, 1.0)), 1.0, most));
-}
-
 // GPUs lower their clocks while images are being made, and take up to a second of work to raise them;
 // software devices do not. `once`: what a run takes, microseconds.
 template <class Run>
@@ -32,6 +28,8 @@ void warmUp(const harness::Device& device, double once, const Run& run) {
   for (int i = 0; i < 2 || Clock::now() - start < least; ++i) run();
 }
 
+}  // namespace
+
 Time percentiles(std::vector<double> times) {
   std::sort(times.begin(), times.end());
   const auto at = [&](double share) {
@@ -40,69 +38,53 @@ Time percentiles(std::vector<double> times) {
   return {at(0.5), at(0.1), at(0.9)};
 }
 
-}  // namespace
-
-Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record) {
-  const harness::Timestamps timestamps(device, 2);
-  const auto run = [&](int times) {
-    device.run([&](VkCommandBuffer commandBuffer) {
-      timestamps.reset(commandBuffer);
-      timestamps.mark(commandBuffer, 0);
-      for (int i = 0; i < times; ++i) {
-        record(commandBuffer);
-        computeBarrier(commandBuffer);
-      }
-      timestamps.mark(commandBuffer, 1);
-    });
-    return timestamps.intervals()[0] / times;
-  };
-  double once = run(1);
-  if (once < kSlow) once = run(1);  // the first use of a pipeline may compile it
-  const int passes = passesFor(once, 256);
-  warmUp(device, once, [&] { run(passes); });
-  std::vector<double> times;
-  for (int i = 0; i < repeat; ++i) times.push_back(run(passes));
-  lastWork = Clock::now();
-  return percentiles(std::move(times));
-}
-
 std::vector<Time> measureParts(harness::Device& device, int repeat, uint32_t parts,
                                const std::function<void(VkCommandBuffer, uint32_t)>& record) {
-  // Recording single dispatches costs the host more than whole frames.
-  constexpr int kMost = 8;
-  const harness::Timestamps timestamps(device, kMost * parts + 1);
-  const auto run = [&](int times) {
+  // One part needs no timestamps between its passes. Recording single dispatches costs the host more than
+  // whole frames.
+  const int most = parts == 1 ? 256 : 8;
+  // Microseconds of each part in one of `passes`.
+  const auto run = [&](int passes) {
+    const uint32_t parted = static_cast<uint32_t>(passes) * parts;
+    const harness::Timestamps timestamps(device, parts == 1 ? 2 : parted + 1);
+    uint32_t marks = 0;
     device.run([&](VkCommandBuffer commandBuffer) {
       timestamps.reset(commandBuffer);
-      timestamps.mark(commandBuffer, 0);
-      for (uint32_t i = 0; i < kMost * parts; ++i) {
-        // All timestamps are read, so all are written.
-        if (i < static_cast<uint32_t>(times) * parts) {
-          record(commandBuffer, i % parts);
-          if (i % parts + 1 == parts) computeBarrier(commandBuffer);
-        }
-        timestamps.mark(commandBuffer, i + 1);
+      timestamps.mark(commandBuffer, marks++);
+      for (uint32_t i = 0; i < parted; ++i) {
+        record(commandBuffer, i % parts);
+        if (i % parts + 1 == parts) computeBarrier(commandBuffer);
+        if (parts > 1 || i + 1 == parted) timestamps.mark(commandBuffer, marks++);
       }
     });
     const std::vector<double> intervals = timestamps.intervals();
-    std::vector<double> sums(parts, 0);
-    for (uint32_t i = 0; i < static_cast<uint32_t>(times) * parts; ++i)
-      sums[i % parts] += intervals[i] / times;
-    return sums;
+    std::vector<double> times(parts, 0);
+    for (uint32_t i = 0; i < intervals.size(); ++i) times[i % parts] += intervals[i] / passes;
+    return times;
   };
-  const std::vector<double> first = run(1);
-  const double once = std::accumulate(first.begin(), first.end(), 0.0);
-  const int passes = passesFor(once, kMost);
-  warmUp(device, once, [&] { run(passes); });
+  const auto once = [&] {
+    const std::vector<double> times = run(1);
+    return std::accumulate(times.begin(), times.end(), 0.0);
+  };
+  double first = once();
+  if (first < kSlow) first = once();  // the first use of a pipeline may compile it
+  const int passes = static_cast<int>(std::clamp(std::ceil(kSpan / std::max(first, 1.0)), 1.0, 1.0 * most));
+  warmUp(device, first, [&] { run(passes); });
   std::vector<std::vector<double>> times(parts);
   for (int i = 0; i < repeat; ++i) {
-    const std::vector<double> sums = run(passes);
-    for (uint32_t k = 0; k < parts; ++k) times[k].push_back(sums[k]);
+    const std::vector<double> each = run(passes);
+    for (uint32_t k = 0; k < parts; ++k) times[k].push_back(each[k]);
   }
   lastWork = Clock::now();
   std::vector<Time> result;
-  for (std::vector<double>& one : times) result.push_back(percentiles(std::move(one)));
+  for (std::vector<double>& part : times) result.push_back(percentiles(std::move(part)));
   return result;
+}
+
+Time measure(harness::Device& device, int repeat, const std::function<void(VkCommandBuffer)>& record) {
+  return measureParts(device, repeat, 1,
+                      [&](VkCommandBuffer commandBuffer, uint32_t) { record(commandBuffer); })
+      .front();
 }
 
 }  // namespace pellucid::bench

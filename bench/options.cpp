@@ -25,8 +25,7 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--device", options.device, "part of the Vulkan device's name");
   app.add_option("--tables", options.tables, "which sections to measure, with commas")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          std::set<std::string>{"frames", "paths", "context", "module", "fused", "gather", "diffusion", "thesis"}))
+      ->check(CLI::IsMember(std::set<std::string>{"frames", "paths", "context", "thesis"}))
       ->capture_default_str();
   app.add_option("--repeat", options.repeat, "counted runs of each; default 7, on a software device 3")
       ->check(CLI::Range(1, 10000));
@@ -53,22 +52,10 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--shadow-size", f.shadowSize,
                  "texels across a shadow map of frames that are made; default 2048, on a software device 512")
       ->check(CLI::Range(16, 8192));
-  app.add_option_function<int>(
-         "--error-pixels",
-         [&options](int pixels) { options.frames.errorPixels = options.plane.errorPixels = pixels; },
-         "at most, where brute force says the error; default 4096 of a frame, all of the tables on planes")
-      ->check(CLI::Range(16, 1000000));
+  app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
+      ->check(CLI::Range(16, 1000000))
+      ->capture_default_str();
   app.add_option("--cache", f.cache, "folder that keeps what brute force gave");
-
-  PlaneOptions& p = options.plane;
-  app.add_option("--size", p.size, "WIDTHxHEIGHT of the planes")->delimiter('x')->capture_default_str();
-  app.add_option("--coverage", p.coverage, "percent of a plane with a material; several with commas")
-      ->delimiter(',')
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  app.add_option("--radius", p.radius, "pixels of a plane within which 99.9 % of the diffused energy lies")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
 
   app.add_option("--json", options.json, "file to write, - for standard output");
   app.add_flag("--ratios", options.ratios,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -10,14 +9,6 @@
 #include <vector>
 
 namespace pellucid::bench {
-
-// Sections on planes and patterns, whose every pixel may be covered.
-struct PlaneOptions {
-  std::pair<int, int> size = {1280, 720};
-  std::vector<double> coverage = {100, 25, 0};        // percent
-  double radius = 40;                                 // pixels
-  int errorPixels = std::numeric_limits<int>::max();  // of a scene, at most, that brute force is computed at
-};
 
 struct FrameOptions {
   std::vector<std::string> captures;       // files
@@ -35,7 +26,6 @@ struct Options {
   bool ratios = false;
   std::optional<int> repeat;  // absent: 7, or 3 on a software device
   std::set<std::string> tables = {"frames", "context"};
-  PlaneOptions plane;
   FrameOptions frames;
   std::filesystem::path compare, results;
   std::filesystem::path submit;  // file for a small extract of the results; empty: none

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "measure.h"
-#include "variant.h"
 
 namespace pellucid::bench {
 
@@ -23,10 +22,10 @@ public:
 
   struct Row {
     std::string name;
-    std::int64_t dispatches, barriers;  // of a difference negative where there are fewer
-    double bytesPerPixel;
-    std::optional<double> error;  // relative RMSE; what against is in the section's title
-    nlohmann::json more = {};     // fields of the JSON
+    uint32_t dispatches, barriers;
+    std::uint64_t transientBytes;  // of images between dispatches
+    std::optional<double> error;   // relative RMSE; what against is in the section's title
+    nlohmann::json more = {};      // fields of the JSON
   };
   void add(const Row& row, const Time& time);
 

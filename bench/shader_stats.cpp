@@ -111,17 +111,6 @@ PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* 
   return vkGetInstanceProcAddr(instance, name);
 }
 
-uint64_t valueOf(const VkPipelineExecutableStatisticKHR& s) {
-  switch (s.format) {
-    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR:
-      return static_cast<uint64_t>(s.value.i64);
-    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_UINT64_KHR:
-      return s.value.u64;
-    default:
-      throw std::runtime_error(std::string("the statistic ") + s.name + " is no whole number");
-  }
-}
-
 Json statisticsOf(const Compiler& compiler, VkPipeline pipeline) {
   const auto get = reinterpret_cast<PFN_vkGetPipelineExecutableStatisticsKHR>(
       vkGetDeviceProcAddr(compiler.handle, "vkGetPipelineExecutableStatisticsKHR"));
@@ -135,7 +124,7 @@ Json statisticsOf(const Compiler& compiler, VkPipeline pipeline) {
   Json row;
   for (const Column& column : kColumns) {
     for (const VkPipelineExecutableStatisticKHR& s : all)
-      if (std::strcmp(s.name, column.statistic) == 0) row[column.key] = valueOf(s);
+      if (std::strcmp(s.name, column.statistic) == 0) row[column.key] = s.value.u64;
     if (!row.contains(column.key))
       throw std::runtime_error(compiler.name + " reports no \"" + column.statistic + "\"");
   }

@@ -5,64 +5,252 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <exception>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "common/error.h"
 #include "common/parse.h"
-
 #include "generated_block.h"
-#include "table_text.h"
+#include "names.h"
 
 namespace {
 
 using namespace pellucid::bench;
+using pellucid::harness::InputError;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
 
-const Json& row(const Json& results, const std::string& section, const std::string& name) {
+constexpr const char* kSummarySize = "1920x1080";
+constexpr const char* kSummaryTruth = "head_ior1.4";  // a frame with path-traced truth
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+std::string word(const Json& row, const char* field) { return row.at(field).get<std::string>(); }
+// A JSON null is NaN: no block of a frame shows the measure.
+double number(const Json& value) { return value.is_null() ? NAN : value.get<double>(); }
+double number(const Json& row, const char* field) { return number(row.at(field)); }
+int whole(const Json& row, const char* field) { return row.at(field).get<int>(); }
+
+// Device, commit and repeats, for a table's heading.
+std::string runOf(const Json& results) {
+  return format("%s, commit `%s`, median of %d runs", word(results, "device").c_str(),
+                word(results, "commit").c_str(), whole(results, "repeat"));
+}
+
+std::string header(const Words& columns) {
+  std::string text = "|", rule = "|";
+  for (const std::string& column : columns) {
+    text += " " + column + " |";
+    rule += "-|";
+  }
+  return text + "\n" + rule + "\n";
+}
+
+// Rows of the section "frames".
+std::vector<const Json*> frameRows(const Json& results, const std::string& kind) {
+  std::vector<const Json*> rows;
+  for (const Json& row : results.at("results"))
+    if (row.at("section") == "frames" && row.at("kind") == kind) rows.push_back(&row);
+  if (rows.empty()) throw InputError("", "results", "no section \"frames\"");
+  return rows;
+}
+
+const Json* find(const std::vector<const Json*>& rows, const std::string& frame, const std::string& size,
+                 const std::string& name) {
+  const auto row = std::find_if(rows.begin(), rows.end(), [&](const Json* r) {
+    return r->at("frame") == frame && r->at("size") == size && r->at("name") == name;
+  });
+  return row == rows.end() ? nullptr : *row;
+}
+
+// The values of a field, each once, in the run's order.
+Words valuesOf(const std::vector<const Json*>& rows, const char* field) {
+  Words values;
+  for (const Json* row : rows)
+    if (std::find(values.begin(), values.end(), word(*row, field)) == values.end())
+      values.push_back(word(*row, field));
+  return values;
+}
+
+// Whole frames beside their errors: a row a method, a column a frame. A cell has the times of two sizes, and
+// then the error of the first.
+std::string framesTable(const Json& results) {
+  const auto frames = frameRows(results, "frame"), rows = frameRows(results, "whole");
+  Words sizes;
+  for (const std::string& size : valuesOf(rows, "size"))
+    if (size == "1920x1080" || size == "3840x2160") sizes.push_back(size);
+  if (sizes.empty()) sizes = valuesOf(rows, "size");
+  std::string listed;
+  for (const std::string& size : sizes) listed.append(listed.empty() ? "" : " / ").append(size);
+  Words columns = {""};
+  for (const std::string& frame : valuesOf(frames, "frame")) {
+    const auto first =
+        std::find_if(frames.begin(), frames.end(), [&](const Json* f) { return f->at("frame") == frame; });
+    columns.push_back(format("%s (%.3f)", frame.c_str(), number(**first, "covered")));
+  }
+  std::string table = runOf(results) + "; microseconds at " + listed +
+                      ", then the error; in brackets: the covered part:\n\n" + header(columns);
+  for (const std::string& name : valuesOf(rows, "name")) {
+    table += "| " + name + " |";
+    for (const std::string& frame : valuesOf(frames, "frame")) {
+      std::string times, error;
+      for (const std::string& size : sizes) {
+        const Json* row = find(rows, frame, size, name);
+        if (!row) continue;
+        times += (times.empty() ? "" : " / ") + format("%.0f", number(*row, "us"));
+        // Path-traced truth says the error where there is some, else brute force of the diffusion.
+        for (const char* field : {"truth_relative_rmse", "relative_rmse"})
+          if (error.empty() && row->contains(field)) error = format(", %.2g", number(*row, field));
+      }
+      table += " " + times + error + " |";
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+// CPU times, memory and dispatches of the first frame at the last size.
+std::string frameHostTable(const Json& results) {
+  const auto rows = frameRows(results, "whole");
+  const std::string frame = valuesOf(rows, "frame").front(), size = valuesOf(rows, "size").back();
+  std::string text = runOf(results) + "; " + frame + " at " + size + ", CPU times in microseconds:\n\n" +
+                     header({"", "dispatches", "barriers", "transients, MB", "plan", "constants", "record"});
+  for (const Json* row : rows) {
+    if (row->at("frame") != frame || row->at("size") != size) continue;
+    text += format("| %s | %d | %d | %.1f |", word(*row, "name").c_str(), whole(*row, "dispatches"),
+                   whole(*row, "barriers"), number(*row, "transient_bytes") / 1e6);
+    for (const char* field : {"cpu_plan_us", "cpu_constants_us", "cpu_record_us"})
+      text += row->contains(field) ? format(" %.1f |", number(*row, field)) : " |";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string contextTable(const Json& results) {
+  std::string rows;
   for (const Json& r : results.at("results"))
-    if (r.at("section") == section && r.at("name") == name) return r;
-  throw InputError("", "results", "no \"" + name + "\" in section \"" + section + "\"");
+    if (r.at("section") == "context creation" && r.contains("us"))
+      rows += format("| %s | %.2f | %.2f |\n", word(r, "name").c_str(), number(r, "us") / 1e6,
+                     number(r, "cpu_us") / 1e6);
+  if (rows.empty()) throw InputError("", "results", "no times in section \"context creation\"");
+  return runOf(results) + "; seconds:\n\n" + header({"", "wall clock", "CPU, all threads"}) + rows;
 }
 
-std::string timesAndError(const Json& r) {
-  // Differences of times may round to -0.
-  const double us = std::round(r.at("us").get<double>()) + 0.0;
-  std::string cells = format(" %.0f us | %.3g |", us, r.at("floor_ratio").get<double>());
-  const auto error = r.find("relative_rmse");
-  return cells + (error == r.end() || error->is_null() ? " |" : format(" %.2g |", error->get<double>()));
+std::string rgbCell(const Json& row, const char* field) {
+  const Json& rgb = row.at(field);
+  return format(" %.3f %.3f %.3f |", number(rgb.at(0)), number(rgb.at(1)), number(rgb.at(2)));
 }
 
-std::string measured(const Json& results) {
-  struct Row {
-    const char* label;
-    const char* section;
-    const char* name;
-  };
-  const char* const module = "module, 100 % covered";
-  const char* const diffusion = "diffusion; error: from brute force";
-  const char* const gather = "gather, added to the frame; error: from all texels";
-  const Row rows[] = {
-      {"whole frame, 0 samples", module, "whole frame"},
-      {"the same, radii not known, as through a perspective camera", "module, radii not known",
-       "whole frame"},
-      {"the same, a quarter covered", "module, 25 % covered", "whole frame"},
-      {"fused translucency dispatch alone", "fused dispatch", "1 lights, 1 maps"},
-      {"diffusion alone", diffusion, "Pellucid"},
-      {"Separable (Jimenez et al. 2015), 11 taps", diffusion, "Separable 2015, 11 taps"},
-      {"Gaussian sum (d'Eon & Luebke 2007, Jimenez et al. 2009)", diffusion, "Gaussian sum 2009, 6 x 7"},
-      {"Burley disk (Golubev 2018), 20 samples", diffusion, "Burley disk 2018, 20 samples"},
-      {"80 samples", diffusion, "Burley disk 2018, 80 samples"},
-      {"gather of transmitted light, 8 samples, added to the frame", gather, "8 samples"},
-      {"the same where nothing is transmitted", gather, "8 samples, nothing transmitted"},
-  };
-  std::string table = format("%s; %d x %d, radius %g pixels, floor %.1f us:\n\n", runOf(results).c_str(),
-                             results.at("width").get<int>(), results.at("height").get<int>(),
-                             results.at("radius_pixels").get<double>(), results.at("floor_us").get<double>());
-  table += "| | time | x | error |\n|-|-|-|-|\n";
-  for (const Row& r : rows)
-    table += std::string("| ") + r.label + " |" + timesAndError(row(results, r.section, r.name)) + "\n";
+// Whole frames that have path-traced truth and `field`; `cells`: of a row after its error.
+template <class Cells>
+std::string rowsWithTruth(const Json& results, const char* field, const Cells& cells) {
+  std::string rows;
+  for (const Json* row : frameRows(results, "whole"))
+    if (row->contains("truth_relative_rmse_rgb") && row->contains(field))
+      rows += "| " + word(*row, "frame") + " " + word(*row, "size") + " | " + word(*row, "name") + " |" +
+              rgbCell(*row, "truth_relative_rmse_rgb") + cells(*row) + "\n";
+  if (rows.empty())
+    throw InputError("", "results", std::string("no frame with path-traced truth has ") + field);
+  return rows;
+}
+
+std::string truthTable(const Json& results) {
+  return runOf(results) + "; relative RMSE of 4x4 averages (R G B), isolated pixels, tint, FLIP:\n\n" +
+         header({"frame", "whole frame", "relative RMSE", "isolated", "tint", "red/green", "FLIP mean",
+                 "99th percentile"}) +
+         rowsWithTruth(results, "flip", [](const Json& row) {
+           return format(" %d |", whole(row, "isolated")) + rgbCell(row, "tint") +
+                  format(" %.3f | %.3f | %.3f |", number(row, "tint_red_green"), number(row, "flip"),
+                         number(row, "flip_p99"));
+         });
+}
+
+// Captures as engines make them, with turned lights beside.
+std::string engineTable(const Json& results) {
+  return word(results, "device") + ", commit `" + word(results, "commit") + "`:\n\n" +
+         header({"frame", "whole frame", "relative RMSE", "FLIP mean", "spots", "flicker",
+                 "of the irradiance", "spots appear, vanish"}) +
+         rowsWithTruth(results, "flicker_rgb", [](const Json& row) {
+           return format(" %.3f | %d |", number(row, "flip"), whole(row, "spots")) +
+                  rgbCell(row, "flicker_rgb") + rgbCell(row, "flicker_irradiance_rgb") +
+                  format(" %d, %d |", whole(row, "spots_appear"), whole(row, "spots_vanish"));
+         });
+}
+
+// The README's tables of two runs: the first one with times, and the first one with errors against path
+// tracing; either run may have both.
+class Summary {
+public:
+  explicit Summary(const std::vector<Json>& runs) {
+    for (const Json& run : runs)
+      for (const Json& r : run.at("results")) {
+        if (!times_ && r.value("size", "") == kSummarySize && r.contains("us")) times_ = &run;
+        if (!errors_ && r.value("frame", "") == kSummaryTruth && r.contains("truth_relative_rmse_rgb"))
+          errors_ = &run;
+      }
+    if (!times_) throw InputError("", "results", std::string("no times at ") + kSummarySize);
+    if (!errors_)
+      throw InputError("", "results",
+                       std::string("no frame \"") + kSummaryTruth + "\" with path-traced truth");
+  }
+  std::string heading() const {
+    return format("Times at %s: %s. Errors of %s: ", kSummarySize, runOf(*times_).c_str(), kSummaryTruth) +
+           (times_->at("device") == errors_->at("device") ? "commit `" + word(*errors_, "commit") + "`"
+                                                          : runOf(*errors_)) +
+           ".\n\n";
+  }
+  std::string time(const std::string& frame, const std::string& name) const {
+    return format(" %.0f |", number(row(*times_, frame, kSummarySize, name), "us"));
+  }
+  std::string error(const std::string& name) const {
+    const std::string size = valuesOf(frameRows(*errors_, "frame"), "size").front();
+    const Json& r = row(*errors_, kSummaryTruth, size, name);
+    return format(" %.3f | %.3f |", number(r.at("truth_relative_rmse_rgb").at(0)), number(r, "flip"));
+  }
+  std::string memory(const std::string& name) const {
+    return format(" %.0f |", number(row(*times_, "portrait", kSummarySize, name), "transient_bytes") / 1e6);
+  }
+
+private:
+  static const Json& row(const Json& run, const std::string& frame, const std::string& size,
+                         const std::string& name) {
+    if (const Json* found = find(frameRows(run, "whole"), frame, size, name)) return *found;
+    throw InputError("", "results", "no \"" + name + "\" of frame \"" + frame + "\" at " + size);
+  }
+
+  const Json* times_ = nullptr;
+  const Json* errors_ = nullptr;
+};
+
+// Times and errors beside others'.
+std::string headlineTable(const std::vector<Json>& runs) {
+  const Summary summary(runs);
+  std::string table = summary.heading() + header({"whole frame", "head, us", "face that fills the screen, us",
+                                                  "nothing on screen, us", "error in red", "mean FLIP"});
+  for (const std::string& name : Words{kModule, "Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"})
+    table += "| " + name + " |" + summary.time("portrait", name) + summary.time("closeup", name) +
+             summary.time("nothing", name) + summary.error(name) + "\n";
+  return table;
+}
+
+// Time, error and memory by samples.
+std::string samplesTable(const std::vector<Json>& runs) {
+  const Summary summary(runs);
+  std::string table = summary.heading() +
+                      header({"`gatherSamples`", "head, us", "error in red", "mean FLIP", "transients, MB"});
+  for (const std::uint32_t samples : kSamples) {
+    const std::string name = nameOf(samples);
+    table += "| " + std::to_string(samples) + " |" + summary.time("portrait", name) + summary.error(name) +
+             summary.memory(name) + "\n";
+  }
   return table;
 }
 
@@ -76,10 +264,10 @@ struct Table {
   std::string (*make)(const std::vector<Json>& runs);
 };
 
-constexpr Table kTables[] = {{"measured", ofOne<measured>},         {"frames", ofOne<framesTable>},
-                             {"frame_host", ofOne<frameHostTable>}, {"context", ofOne<contextTable>},
-                             {"truth", ofOne<truthTable>},          {"engine", ofOne<engineTable>},
-                             {"headline", headlineTable},           {"samples", samplesTable}};
+constexpr Table kTables[] = {{"frames", ofOne<framesTable>},   {"frame_host", ofOne<frameHostTable>},
+                             {"context", ofOne<contextTable>}, {"truth", ofOne<truthTable>},
+                             {"engine", ofOne<engineTable>},   {"headline", headlineTable},
+                             {"samples", samplesTable}};
 
 }  // namespace
 
@@ -89,10 +277,7 @@ int main(int argc, char** argv) {
       std::find_if(std::begin(kTables), std::end(kTables), [&](const Table& t) { return t.name == name; });
   if (table == std::end(kTables)) {
     std::string names;
-    for (const Table& t : kTables) {
-      if (!names.empty()) names += "|";
-      names += t.name;
-    }
+    for (const Table& t : kTables) names.append(names.empty() ? "" : "|").append(t.name);
     std::fprintf(stderr, "usage: pellucid_bench_tables RESULTS.json[,...] %s [--check|--update FILE]\n",
                  names.c_str());
     return 2;

@@ -1,16 +1,25 @@
-#include "thesis.h"
+#include "sections.h"
 
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <vector>
 
-#include "baselines/baselines.h"
+#include "baselines/whole_frames.h"
 #include "bench_frame.h"
 #include "capture/material.h"
 #include "common/error.h"
 #include "gltf/gltf.h"
+#include "kCombine.h"
+#include "kLinearize.h"
+#include "kThickness.h"
+#include "kTransmittance.h"
+#include "kTransmittanceOfThickness.h"
 #include "measure.h"
 #include "names.h"
 #include "raster/draw.h"
@@ -22,8 +31,6 @@
 #include "scene/turn.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"
-#include "steps.h"
-#include "turntable_shares.h"
 
 namespace pellucid::bench {
 
@@ -37,13 +44,24 @@ namespace {
 constexpr int kFrames = 5000, kHeadTurns = 2, kLightTurns = 5;
 constexpr int kTimed = 12, kTimedSoftware = 4;  // frames, evenly apart, whose passes are timed
 
-// Mean microseconds of each pass; those of translucency average only the frames that have some.
-struct Passes {
-  double gbuffer = 0, shadow = 0, lighting = 0, diffusion = 0;
-  double front = 0, back = 0, thickness = 0, transmittance = 0, both = 0, addition = 0;
-  double backFace = 0;           // the back-face pass that computes what comes through
-  double fused = 0;              // the module's one dispatch
-  double module[3] = {0, 0, 0};  // its whole frames, by kSamples
+// Microseconds of each pass in the frames that have the pass.
+class Passes {
+public:
+  void add(const std::string& name, double microseconds) {
+    if (times_[name].empty()) names_.push_back(name);
+    times_[name].push_back(microseconds);
+  }
+  const std::vector<std::string>& names() const { return names_; }
+  double mean(const std::string& name) const {
+    const auto found = times_.find(name);
+    if (found == times_.end()) throw DeviceError("no frame of the turntable has the pass \"" + name + "\"");
+    return std::accumulate(found->second.begin(), found->second.end(), 0.0) /
+           static_cast<double>(found->second.size());
+  }
+
+private:
+  std::map<std::string, std::vector<double>> times_;
+  std::vector<std::string> names_;  // in the order of the first frame
 };
 
 struct Row {
@@ -71,6 +89,80 @@ ReplaySettings translucencyAlone() {
   settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   return settings;
 }
+
+constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+constexpr VkDescriptorType kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+constexpr VkDescriptorType kWrite = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+
+// Translucency of camera-space thickness as separate dispatches, the way the thesis (4.7.2) first has it. The
+// frame: device depths, normals, back depth, at most one shadow image, translucency alone with 1.
+class Steps {
+public:
+  explicit Steps(const std::shared_ptr<const BenchFrame>& frame)
+      : frame_(frame),
+        linearize_(frame->device(), kLinearize, {kUniform, kRead, kWrite}),
+        thickness_(frame->device(), kThickness, {kUniform, kRead, kRead, kWrite}),
+        transmittance_(frame->device(), kTransmittanceOfThickness, transmittanceTypes()),
+        both_(frame->device(), kTransmittance, transmittanceTypes()),
+        addition_(frame->device(), kCombine, {kUniform, kRead, kRead, kWrite}),
+        front_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        back_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        chord_(frame->image(VK_FORMAT_R32_SFLOAT)),
+        transmitted_(frame->image()),
+        result_(frame->image()) {}
+
+  // Planar distances, which a raster pass draws otherwise.
+  void linearize(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, linearize_, {frame_->images().frontDepth, front_->use()});
+    dispatch(commandBuffer, linearize_, {frame_->images().backDepth, back_->use()});
+  }
+  void thickness(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, thickness_, {front_->use(), back_->use(), chord_->use()});
+  }
+  void transmittance(VkCommandBuffer commandBuffer) const {
+    transmit(commandBuffer, transmittance_, *chord_);
+  }
+  // Thickness and transmittance in one.
+  void both(VkCommandBuffer commandBuffer) const { transmit(commandBuffer, both_, *back_); }
+  void addition(VkCommandBuffer commandBuffer) const {
+    dispatch(commandBuffer, addition_, {frame_->images().irradiance, transmitted_->use(), result_->use()});
+  }
+
+  using Step = void (Steps::*)(VkCommandBuffer) const;
+  Image outputOf(const std::vector<Step>& steps) const {
+    transmitted_->clear();
+    frame_->device().run([&](VkCommandBuffer commandBuffer) {
+      for (const Step step : steps) {
+        (this->*step)(commandBuffer);
+        computeBarrier(commandBuffer);
+      }
+    });
+    return rgb(result_->download());
+  }
+
+private:
+  static std::vector<VkDescriptorType> transmittanceTypes() {
+    return {kUniform, kBuffer, kBuffer, kBuffer, kRead, kRead, kRead, kRead, kRead, kWrite};
+  }
+  void transmit(VkCommandBuffer commandBuffer, const ComputePass& pass, const GpuImage& chordOrBack) const {
+    const PellucidFrame& f = frame_->images();
+    dispatch(commandBuffer, pass,
+             {frame_->planned(PELLUCID_BINDING_LIGHTS), frame_->planned(PELLUCID_BINDING_SHADOWS),
+              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(), f.normal,
+              f.material, frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
+  }
+  void dispatch(VkCommandBuffer commandBuffer, const ComputePass& pass,
+                std::vector<Resource> resources) const {
+    resources.insert(resources.begin(), frame_->planned(PELLUCID_BINDING_FRAME));
+    pass.record(commandBuffer, frame_->width(), frame_->height(), resources,
+                {frame_->run().plan().activeLights});
+  }
+
+  std::shared_ptr<const BenchFrame> frame_;
+  ComputePass linearize_, thickness_, transmittance_, both_, addition_;
+  std::shared_ptr<GpuImage> front_, back_, chord_, transmitted_, result_;
+};
 
 class ThesisBench {
 public:
@@ -112,20 +204,12 @@ public:
   }
 
   Passes passes() {
-    Passes mean;
-    int withLight = 0;
+    Passes passes;
     for (int i = 0; i < timed_; ++i) {
       setFrame(i * kFrames / timed_);
-      addFrame(mean, withLight);
+      addFrame(passes);
     }
-    for (double* sum : {&mean.gbuffer, &mean.shadow, &mean.lighting, &mean.diffusion, &mean.front, &mean.back,
-                        &mean.module[0], &mean.module[1], &mean.module[2]})
-      *sum /= timed_;
-    if (withLight == 0) throw DeviceError("no frame of the turntable has light that comes through");
-    for (double* sum :
-         {&mean.thickness, &mean.transmittance, &mean.both, &mean.addition, &mean.backFace, &mean.fused})
-      *sum /= withLight;
-    return mean;
+    return passes;
   }
 
 private:
@@ -163,7 +247,7 @@ private:
     });
   }
 
-  void addFrame(Passes& sum, int& withLight) {
+  void addFrame(Passes& passes) {
     Capture capture = withMapsAlone(rasterizer_.draw(turned_, raster_)->capture());
     capture.albedo = {};
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
@@ -172,15 +256,17 @@ private:
     TargetPool targets(device_);
     const FrontTarget front(targets, raster_);
     device_.run([&](VkCommandBuffer commands) { front.record(commands, rasterizer_.uploaded(), view); });
-    sum.gbuffer +=
-        draw(*front.target, view, {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    passes.add("G-buffer", draw(*front.target, view,
+                                {FragmentShader::Surface, VK_CULL_MODE_BACK_BIT, nearer(reversed), false}));
     const RenderTarget depth(device_, raster_.width, raster_.height, depthColors(reversed),
                              farDepth(reversed));
-    sum.front += draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false});
+    passes.add("front depth",
+               draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_BACK_BIT, nearer(reversed), false}));
     const EarlierPass behind{&front.depthNormal(), &front.albedoObject()};
-    sum.back +=
-        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind);
-    addLight(sum, view, front);
+    passes.add(
+        "back depth",
+        draw(depth, view, {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(reversed), false}, behind));
+    addLight(passes, view, front);
 
     ReplaySettings whole;
     whole.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
@@ -190,17 +276,15 @@ private:
     };
     for (std::size_t i = 0; i < std::size(kSamples); ++i) {
       whole.translucency.gatherSamples = kSamples[i];
-      sum.module[i] += time(moduleVariant(frame(whole), "").record);
+      passes.add(nameOf(kSamples[i]), time(moduleVariant(frame(whole), "").record));
     }
     const auto thesis = std::make_shared<BenchFrame>(device_, context_, capture, linear(materials),
                                                      translucencyAlone(), inputs);
-    sum.diffusion += time(gaussianSum(thesis).record);
-    if (!isNecessary()) return;
-    ++withLight;
-    addTranslucency(sum, thesis, view, front);
+    passes.add("six Gaussians", time(gaussianSum(thesis).record));
+    if (isNecessary()) addTranslucency(passes, thesis, view, front);
   }
 
-  void addLight(Passes& sum, const DrawView& view, const FrontTarget& front) {
+  void addLight(Passes& passes, const DrawView& view, const FrontTarget& front) {
     const Light& light = model_.lights[0];
     TargetPool targets(device_);
     std::vector<DrawnMap> drawn;
@@ -214,56 +298,56 @@ private:
     const DrawView lightView{drawn[0].image.clipFromView, drawn[0].image.viewFromWorld, kReversed};
     const RenderTarget map(device_, raster_.shadowSize, raster_.shadowSize, depthColors(kReversed),
                            farDepth(kReversed));
-    sum.shadow += draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false});
+    passes.add("shadow map",
+               draw(map, lightView, {FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false}));
     const IrradiancePass pass(device_);
     GpuImage irradiance(device_, raster_.width, raster_.height, VK_FORMAT_R32G32B32A32_SFLOAT);
     irradiance.clear();
     const LitSurfaces surfaces{front.normalPlanar(), front.depthNormal(), irradiance, view};
-    sum.lighting += time(
-        [&](VkCommandBuffer commands) { pass.record(commands, surfaces, light, shadowsOf(drawn, raster_)); });
+    passes.add("lighting", time([&](VkCommandBuffer commands) {
+                 pass.record(commands, surfaces, light, shadowsOf(drawn, raster_));
+               }));
   }
 
-  void addTranslucency(Passes& sum, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
+  void addTranslucency(Passes& passes, const std::shared_ptr<const BenchFrame>& frame, const DrawView& view,
                        const FrontTarget& front) {
-    requireAgreement(frame);
-    const TranslucencySteps steps = translucencySteps(frame);
-    sum.thickness += time(steps.thickness);
-    sum.transmittance += time(steps.transmittance);
-    sum.both += time(steps.both);
-    sum.addition += time(steps.addition);
-    sum.fused += time(moduleVariant(frame, "").record);
+    const Steps steps(frame);
+    const Variant module = moduleVariant(frame, "");
+    const Image right = outputOf(device_, module);
+    requireAgreement(right, steps.outputOf({&Steps::linearize, &Steps::both, &Steps::addition}));
+    requireAgreement(right, steps.outputOf({&Steps::linearize, &Steps::thickness, &Steps::transmittance,
+                                            &Steps::addition}));
+    const auto timeOf = [&](Steps::Step step) {
+      return time([&](VkCommandBuffer commandBuffer) { (steps.*step)(commandBuffer); });
+    };
+    passes.add("thickness", timeOf(&Steps::thickness));
+    passes.add("transmittance", timeOf(&Steps::transmittance));
+    passes.add("both in one", timeOf(&Steps::both));
+    passes.add("addition", timeOf(&Steps::addition));
+    passes.add("Pellucid's one dispatch", time(module.record));
     const bool keepGreater = view.reversedDepth;
     const RenderTarget target(device_, raster_.width, raster_.height,
                               {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
     const auto constants = std::get<VkDescriptorBufferInfo>(frame->planned(PELLUCID_BINDING_FRAME)).buffer;
     const PlannedInputs planned{frame->run().plan(), frame->images(), constants};
-    sum.backFace +=
+    passes.add(
+        "back-face pass",
         draw(target, view, {FragmentShader::Transmit, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
-             {&front.depthNormal(), &front.albedoObject(), &planned});
+             {&front.depthNormal(), &front.albedoObject(), &planned}));
   }
 
-  // The timed variants compute the same: the steps are held against the module's dispatch.
-  void requireAgreement(const std::shared_ptr<const BenchFrame>& frame) const {
+  static void requireAgreement(const Image& module, const Image& steps) {
     constexpr double kTolerance = 5e-3;  // halves, and chords that are stored in between
-    std::vector<Image> images;
-    for (const Variant& variant : translucencyVariants(frame)) {
-      device_.run(variant.record);
-      images.push_back(variant.output());
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < module.data.size(); ++i) {
+      const double value = module.data[i];
+      if (value == 0) continue;  // pixels without a material are the steps' alone
+      difference += std::pow(static_cast<double>(steps.data[i]) - value, 2);
+      size += value * value;
     }
-    const Image& module = images.back();
-    for (std::size_t k = 0; k + 1 < images.size(); ++k) {
-      double difference = 0, size = 0;
-      for (std::size_t i = 0; i < module.data.size(); ++i) {
-        const double value = module.data[i];
-        // Pixels without a material are the steps' alone.
-        if (value == 0) continue;
-        difference += std::pow(static_cast<double>(images[k].data[i]) - value, 2);
-        size += value * value;
-      }
-      if (!(difference <= kTolerance * kTolerance * size))
-        throw DeviceError("the separate steps differ from the module's dispatch by " +
-                          std::to_string(std::sqrt(difference / size)));
-    }
+    if (!(difference <= kTolerance * kTolerance * size))
+      throw DeviceError("the separate steps differ from the module's dispatch by " +
+                        std::to_string(std::sqrt(difference / size)));
   }
 
   Device& device_;
@@ -279,9 +363,12 @@ private:
 };
 
 std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
-  const double lit = p.gbuffer + p.shadow + p.lighting, diffused = lit + p.diffusion;
-  const double depths = p.front + p.back, all = depths + p.thickness + p.transmittance;
-  const double combined = depths + p.both, alternate = depths / 2 + p.both, add = p.addition;
+  const double lit = p.mean("G-buffer") + p.mean("shadow map") + p.mean("lighting");
+  const double diffused = lit + p.mean("six Gaussians"), front = p.mean("front depth"),
+               back = p.mean("back depth");
+  const double depths = front + back, thickness = p.mean("thickness"), both = p.mean("both in one");
+  const double all = depths + thickness + p.mean("transmittance");
+  const double combined = depths + both, alternate = depths / 2 + both, add = p.mean("addition");
   return {
       {"5.1", 1, "baseline: shadow map, diffuse lighting", lit, 540},
       {"5.1", 2, "1 + six Gaussians (Jimenez 2009)", diffused, 304},
@@ -292,9 +379,9 @@ std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
       {"5.1", 7, "4 + coherence .005", diffused + s.both[0] * all + s.necessary * add, 266},
       {"5.1", 8, "4 + coherence .01", diffused + s.both[1] * all + s.necessary * add, 282},
       {"5.2", 1, "all of transmittance", diffused + all + add, 222},
-      {"5.2", 2, "1 less the transmittance shader", diffused + depths + p.thickness, 239},
+      {"5.2", 2, "1 less the transmittance shader", diffused + depths + thickness, 239},
       {"5.2", 3, "2 less the thickness shader", diffused + depths, 258},
-      {"5.2", 4, "3 less back depth", diffused + p.front, 278},
+      {"5.2", 4, "3 less back depth", diffused + front, 278},
       {"5.2", 5, "3 less all depths", diffused, 304},
       {"5.3", 1, "baseline", lit, 540},
       {"5.3", 2, "1 + six Gaussians (Jimenez 2009)", diffused, 304},
@@ -303,11 +390,12 @@ std::vector<Row> rowsOf(const Passes& p, const TurntableShares& s) {
       {"5.3", 5, "4 + depth maps on alternate frames", diffused + alternate + add, 261},
       {"5.3", 6, "4 + coherence .005", diffused + s.coherent[0] * combined + add, 265},
       {"5.3", 7, "all", diffused + s.both[0] * alternate + s.necessary * add, 296},
-      {"more", 0, "2 + transmittance in the back-face pass", diffused + p.backFace + add, 0},
-      {"more", 0, "2 + back depth, one dispatch of Pellucid", diffused + p.back + p.fused, 0},
-      {"more", 0, "1 + " + nameOf(kSamples[0]), lit + p.module[0], 0},
-      {"more", 0, "1 + " + nameOf(kSamples[1]), lit + p.module[1], 0},
-      {"more", 0, "1 + " + nameOf(kSamples[2]), lit + p.module[2], 0},
+      {"more", 0, "2 + transmittance in the back-face pass", diffused + p.mean("back-face pass") + add, 0},
+      {"more", 0, "2 + back depth, one dispatch of Pellucid",
+       diffused + back + p.mean("Pellucid's one dispatch"), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[0]), lit + p.mean(nameOf(kSamples[0])), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[1]), lit + p.mean(nameOf(kSamples[1])), 0},
+      {"more", 0, "1 + " + nameOf(kSamples[2]), lit + p.mean(nameOf(kSamples[2])), 0},
   };
 }
 
@@ -343,6 +431,28 @@ void print(const std::vector<Row>& rows, Report& report) {
 
 }  // namespace
 
+TurntableShares turntableShares(const std::vector<TurntableFrame>& frames) {
+  TurntableShares shares;
+  const double one = 1.0 / static_cast<double>(frames.size());
+  for (const TurntableFrame& frame : frames) shares.necessary += frame.necessary ? one : 0;
+  for (std::size_t i = 0; i < std::size(kCoherence); ++i) {
+    // Frames without light that comes through keep nothing, so that the first one after them is computed.
+    std::optional<double> kept, keptOfBoth;
+    for (const TurntableFrame& frame : frames) {
+      if (!kept || std::abs(frame.cosine - *kept) > kCoherence[i]) {
+        shares.coherent[i] += one;
+        kept = frame.cosine;
+      }
+      if (!frame.necessary) keptOfBoth.reset();
+      if (frame.necessary && (!keptOfBoth || std::abs(frame.cosine - *keptOfBoth) > kCoherence[i])) {
+        shares.both[i] += one;
+        keptOfBoth = frame.cosine;
+      }
+    }
+  }
+  return shares;
+}
+
 void measureThesis(Device& device, const Context& context, const FrameOptions& options, int repeat,
                    Report& report) {
   if (options.models.empty())
@@ -358,15 +468,9 @@ void measureThesis(Device& device, const Context& context, const FrameOptions& o
       kFrames, shares.necessary, shares.coherent[0], shares.coherent[1], shares.both[0], shares.both[1]);
   report.note(text);
   const Passes passes = bench.passes();
-  const std::pair<const char*, double> parts[] = {
-      {"G-buffer", passes.gbuffer},        {"shadow map", passes.shadow},
-      {"lighting", passes.lighting},       {"six Gaussians", passes.diffusion},
-      {"front depth", passes.front},       {"back depth", passes.back},
-      {"thickness", passes.thickness},     {"transmittance", passes.transmittance},
-      {"both in one", passes.both},        {"addition", passes.addition},
-      {"back-face pass", passes.backFace}, {"Pellucid's one dispatch", passes.fused}};
-  for (const auto& [name, microseconds] : parts) {
-    std::snprintf(text, sizeof text, "  %-34s %9.1f", name, microseconds);
+  for (const std::string& name : passes.names()) {
+    const double microseconds = passes.mean(name);
+    std::snprintf(text, sizeof text, "  %-34s %9.1f", name.c_str(), microseconds);
     report.note(text);
     report.record({{"table", "passes"}, {"name", name}, {"us", microseconds}});
   }

@@ -13,7 +13,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   Receiver receiver;
   if (!readReceiver(pixel, receiver)) return;
-  vec3 sum = texelFetch(irradianceImage, pixel, 0).rgb;
+  vec3 sum = texelFetch(sourceImage, pixel, 0).rgb;
   for (uint i = 0u; i < pass.value.x; ++i) {
     Incident incident = incidentLight(lights[i], receiver.position);
     float cosine = (kWrap - dot(incident.toLight, receiver.normal)) / ((1.0 + kWrap) * (1.0 + kWrap));

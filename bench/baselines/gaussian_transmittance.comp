@@ -16,7 +16,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   Receiver receiver;
   if (!readReceiver(pixel, receiver)) return;
-  vec3 sum = texelFetch(irradianceImage, pixel, 0).rgb;
+  vec3 sum = texelFetch(sourceImage, pixel, 0).rgb;
   vec3 inner = receiver.position - kShrink / frame.camera.range.w * receiver.normal;
   for (uint i = 0u; i < pass.value.x; ++i) {
     Incident incident = incidentLight(lights[i], inner);

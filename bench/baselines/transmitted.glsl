@@ -3,20 +3,13 @@
 #ifndef PELLUCID_BASELINE_TRANSMITTED_GLSL
 #define PELLUCID_BASELINE_TRANSMITTED_GLSL
 
+#include "frame.glsl"
 #include "frame/gbuffer_decode.glsl"
-#include "lib/camera.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant) uniform Pass { uvec4 value; } pass; // x: lights
-layout(set = 0, binding = 0) uniform Frame { FrameConstants frame; };
-layout(set = 0, binding = 1) readonly buffer Lights { LightConstants lights[]; };
-layout(set = 0, binding = 2) readonly buffer Shadows { ShadowConstants shadows[]; };
-layout(set = 0, binding = 3) readonly buffer Kernel { vec4 kernel[]; };
-layout(set = 0, binding = 4) uniform texture2D frontDepthImage;
-layout(set = 0, binding = 5) uniform utexture2D materialImage;
-layout(set = 0, binding = 6) uniform texture2D normalImage;
-layout(set = 0, binding = 7) uniform texture2D irradianceImage;
-layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D destinationImage;
+// The source is the irradiance; pass.value.x: lights.
+layout(set = 0, binding = 6) readonly buffer Lights { LightConstants lights[]; };
+layout(set = 0, binding = 7) readonly buffer Shadows { ShadowConstants shadows[]; };
+layout(set = 0, binding = 8) uniform texture2D normalImage;
 layout(set = 0, binding = 9) uniform texture2D shadowImage0;
 layout(set = 0, binding = 10) uniform texture2D shadowImage1;
 layout(set = 0, binding = 11) uniform texture2D shadowImage2;
@@ -42,15 +35,11 @@ struct Receiver {
 // False where the stencil test of the rasterizing originals is.
 bool readReceiver(ivec2 pixel, out Receiver receiver) {
   receiver = Receiver(vec3(0.0), vec3(0.0));
-  if (any(greaterThanEqual(pixel, ivec2(frame.rect.zw)))) return false;
-  if (decodeMaterial(texelFetch(materialImage, pixel, 0)) == 0u) return false;
-  float stored = texelFetch(frontDepthImage, pixel, 0).x;
-  bool viewZ = (frame.flags.x & PELLUCID_FLAG_FRONT_VIEW_Z) != 0u;
-  float planar = viewZ ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
+  if (isSkipped(pixel)) return false;
   ViewRay ray = viewRay(frame.camera, pixel);
   vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
   // A normal of no length stays one; a pixel without depth lies at the eye, where no map sees it.
-  receiver = Receiver(ray.origin + max(planar, 0.0) * ray.direction,
+  receiver = Receiver(ray.origin + max(planarAt(pixel), 0.0) * ray.direction,
                       normal * inversesqrt(max(dot(normal, normal), 1.0e-8)));
   return true;
 }

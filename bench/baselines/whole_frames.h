@@ -1,16 +1,25 @@
 // Whole frames as others render them: their light through thin parts, then their diffusion. Own
-// implementations.
+// implementations, each with the kernel that its paper derives for the frame's material.
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "baselines/baselines.h"
+#include "bench_frame.h"
 #include "capture/capture.h"
 
 namespace pellucid::bench {
+
+// The image to diffuse: the frame's irradiance, or an image of rgba16f in its place.
+using Source = std::shared_ptr<const harness::GpuImage>;
+
+// d'Eon & Luebke 2007 / Jimenez et al. 2009: six Gaussians, two passes each.
+Variant gaussianSum(const std::shared_ptr<const BenchFrame>& frame, const Source& source = nullptr);
+
+// The diffusions that follow transmittance in wholeFrames(), of the frame's irradiance: six Gaussians, the
+// pre-integrated separable kernel of Jimenez et al. 2015, and the disk of Golubev 2018.
+std::vector<Variant> baselines(const std::shared_ptr<const BenchFrame>& frame);
 
 // Irradiance with the light that comes through, one pass over all lights with a shadow map.
 struct TransmittancePass {
@@ -42,9 +51,9 @@ struct WholeFrame {
 // that are in use. `frame`: of transmittanceSettings().
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame);
 
-// The transmittance passes against float64 evaluations of their equations on the CPU, on a slab, whose answer
-// is closed, and on an ear under three lights; the whole frames against their diffusion of what these passes
-// wrote. Throws DeviceError naming what differs.
+// The module's translucency against its T(d) on a slab; the transmittance passes against float64 evaluations
+// of their equations on the CPU, on the slab, whose answer is closed, and on an ear under three lights; the
+// whole frames against their diffusion of what these passes wrote. Throws DeviceError naming what differs.
 void requireRightWholeFrames(harness::Device& device, const harness::Context& context,
                              const PellucidMaterial& material);
 

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "fit/energy_fit.h"
-#include "fit/energy_table.h"
-#include "fit/pyramid_model.h"
+#include "fit/fit.h"
 
 namespace pellucid::fit {
 namespace {
@@ -117,15 +115,6 @@ TEST_F(EdgeErrors, IsLeastAtTheFit) {
     EXPECT_LT(error().best(g, 1)[kLastElement] * error().best(g, 1)[kLastElement],
               best[kLastElement] * best[kLastElement])
         << g;
-  }
-}
-
-TEST(EnergyTable, BuiltOneIsNearlyAsGoodAsAnyWeights) {
-  for (const GaussianErrors& e : errorsOf(builtEnergyTable())) {
-    EXPECT_GE(e.table, e.unconstrained - 1e-4) << e.deviation;
-    // Narrower ones have next to nothing beside the pixel, and four decimals of it.
-    if (e.deviation < 0.5) continue;
-    EXPECT_LE(e.table, 1.5 * e.unconstrained + 0.02) << e.deviation;
   }
 }
 

@@ -1,5 +1,3 @@
-#include "path_flicker.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -9,15 +7,14 @@
 #include "bench_frame.h"
 #include "capture/material.h"
 #include "common/compare.h"
-#include "frame_sources.h"
 #include "measure.h"
 #include "metrics/flicker.h"
 #include "metrics/moved_capture.h"
 #include "names.h"
 #include "raster/camera_path.h"
 #include "raster/raster.h"
-#include "replay/replay.h"
 #include "scene.h"
+#include "sections.h"
 
 namespace pellucid::bench {
 
