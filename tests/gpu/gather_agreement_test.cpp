@@ -51,7 +51,7 @@ class GatherAgreement : public GpuTest {};
 
 TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
   const SceneParameters conventions[] = {{.name = "sphere",
-                                          .options = {{"radius", 8}, {"extent", 20}},
+                                          .options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 80}},
                                           .orthographic = false,
                                           .reversedZ = true,
                                           .infiniteFar = true,
@@ -80,7 +80,9 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
   for (SceneParameters p : conventions) {
     p.width = p.height = 64;
     p.shadowSize = 160;
-    const Capture c = evenlyLit(p);
+    Capture c = evenlyLit(p);
+    // The picture lies in the penumbra.
+    for (Light& light : c.lights) light.innerConeAngle = 0;
     // Every fourth of the blocks that error() averages, along each row another one.
     const auto wanted = [](int x, int y) { return (x / 4 + y / 4) % 4 == 0; };
     const Image all = gatherOfAllTexels(c, c.irradiance, wanted);
@@ -202,6 +204,56 @@ TEST_F(GatherAgreement, WeakLightsChangeNothing) {
   c.lights.back().intensity *= 1e-4;
   EXPECT_LT(error(c, gpuGather(replayer(), c, 16), alone), 2e-3);
   EXPECT_GT(error(c, both, alone), 0.05) << "it reaches nothing";
+}
+
+// The same frame in another unit of length.
+Capture inUnitsOf(double meters, Capture c) {
+  const double scale = c.metersPerUnit / meters;
+  const auto scaleDepth = [&](Image& image) {
+    for (float& v : image.data)
+      if (v < kNoDepth) v *= static_cast<float>(scale);
+  };
+  const auto scaleClip = [&](Matrix& m) {
+    for (size_t i = 12; i < 16; ++i) m[i] *= scale;
+    if (m[3] == 0 && m[7] == 0 && m[11] == 0)  // orthographic: w is 1
+      for (double& v : m) v /= scale;
+  };
+  const auto scaleView = [&](Matrix& m) {
+    for (size_t i = 12; i < 15; ++i) m[i] *= scale;
+  };
+  c.metersPerUnit = meters;
+  scaleClip(c.clipFromView);
+  scaleView(c.viewFromWorld);
+  scaleDepth(c.frontDepth.image);
+  scaleDepth(c.backDepth.image);
+  for (Light& light : c.lights) {
+    for (double& v : light.position) v *= scale;
+    if (light.type != PELLUCID_LIGHT_DIRECTIONAL) light.intensity *= scale * scale;
+    for (ShadowMap& map : light.shadowMaps) {
+      scaleClip(map.clipFromWorld);
+      scaleView(*map.viewFromWorld);
+      scaleDepth(map.depth.image);
+      scaleDepth(map.exitDepth);
+    }
+  }
+  return c;
+}
+
+// A shell, whose maps have exits into its hollow, is the same picture in any unit of length.
+TEST_F(GatherAgreement, UnitsOfLengthChangeNothing) {
+  for (const auto light : {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT}) {
+    const Capture c = evenlyLit({.name = "hollow_sphere",
+                                 .width = 64,
+                                 .height = 64,
+                                 .options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 80}},
+                                 .lightType = light,
+                                 .shadowSize = 192});
+    const Image plain = gpuGather(replayer(), c, 16);
+    // Powers of two round nothing.
+    for (const double meters : {0.001 * 64, 0.001 / 64})
+      EXPECT_LT(error(c, gpuGather(replayer(), inUnitsOf(meters, c), 16), plain), 1e-5)
+          << "light " << light << ", units of " << meters << " m";
+  }
 }
 
 // With reuse, frames that compute and frames that keep are what frames without it are.

@@ -26,6 +26,22 @@ Capture backlitSlab(double thickness, PellucidDepthEncoding encoding) {
   return c;
 }
 
+// Straight from the camera, with a map of depth 10.
+Light frontLight() {
+  Light light = backLight();
+  light.direction = {0, 0, -1};
+  ShadowMap map;
+  map.clipFromWorld = kIdentity;
+  map.clipFromWorld[0] = map.clipFromWorld[5] = 0.01;
+  map.clipFromWorld[10] = -1.0 / 100;  // grows towards -z from z = 0
+  map.viewFromWorld = kIdentity;
+  map.depth.encoding = PELLUCID_DEPTH_VIEW_Z;
+  map.depth.image = Image(1, 1, 1, 10);
+  cover50mm(map);
+  light.shadowMaps = {map};
+  return light;
+}
+
 ReplaySettings settings(uint32_t samples) {
   ReplaySettings s = inFloats();
   s.translucency.gatherSamples = samples;
@@ -91,22 +107,31 @@ TEST_F(Gather, IsTheSlabsTransmittance) {
 TEST_F(Gather, ConstantLightStaysConstant) {
   Capture c = flatCapture(8, 8, 2);
   c.backDepth = {};  // a thin slab returns less
-  Light front = backLight();
-  front.direction = {0, 0, -1};
   for (size_t i = 0; i < c.irradiance.data.size(); ++i) c.irradiance.data[i] = 3;
-  ShadowMap map;
-  map.clipFromWorld = kIdentity;
-  map.clipFromWorld[0] = map.clipFromWorld[5] = 0.01;
-  map.clipFromWorld[10] = -1.0 / 100;  // grows towards -z from z = 0
-  map.viewFromWorld = kIdentity;
-  map.depth.encoding = PELLUCID_DEPTH_VIEW_Z;
-  map.depth.image = Image(1, 1, 1, 10);
-  cover50mm(map);
-  front.shadowMaps = {map};
-  c.lights = {front};
+  c.lights = {frontLight()};
   const Image out = replay(c, testMaterial(), settings(32));
   // What enters beyond the edges stands for as much as it displaces.
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], 3, 6e-3);
+}
+
+// Without diffusion, light that enters where the camera sees it stays there: nothing comes through. The front recedes by 1.5 mm
+// a mm, and its normals face the camera, so that pixels' planes do not tell which points they show.
+TEST_F(Gather, SlopesThatTheCameraSeesAreNotHidden) {
+  Capture c = flatCapture(48, 48, 20);
+  c.lights = {frontLight()};
+  const auto recede = [](Image& depth, double side) {
+    for (int y = 0; y < depth.height; ++y)
+      for (int x = 0; x < depth.width; ++x)
+        *depth.at(x, y) = static_cast<float>(50 + 1.5 * side * (x + 0.5 - 0.5 * depth.width));
+  };
+  recede(c.lights[0].shadowMaps[0].depth.image, 0.2);
+  recede(c.frontDepth.image, 0.25);
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+  ReplaySettings s = settings(32);
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Image out = replay(c, testMaterial(), s);
+  // Of an irradiance of 3, .02 comes from beyond the image's edges. Points that count as hidden would bring .2 and more.
+  for (int x = 16; x < 32; ++x) EXPECT_LT(out.at(x, 24)[0], 0.05f) << x;
 }
 
 // Cells of 4 pixels are linear between their probes: a slab that gets thicker along x, or along y, is as with a probe a pixel.

@@ -38,8 +38,7 @@ void PrintTo(const Scene& value, std::ostream* out) { *out << value.name; }
 const Capture& make(const Scene& scene) {
   static std::map<Scene, Capture> made;
   if (const auto found = made.find(scene); found != made.end()) return found->second;
-  return made
-      .emplace(scene, makeScene({.name = scene.name,
+  Capture c = makeScene({.name = scene.name,
                                  .width = 96,
                                  .height = 80,
                                  .orthographic = scene.orthographic,
@@ -48,8 +47,10 @@ const Capture& make(const Scene& scene) {
                                  .depthEncoding = scene.depth,
                                  .lightType = scene.light,
                                  .shadowSize = 128,
-                                 .shadowEncoding = scene.shadow}))
-      .first->second;
+                                 .shadowEncoding = scene.shadow});
+  // The picture lies in the penumbra.
+  for (Light& light : c.lights) light.innerConeAngle = 0;
+  return made.emplace(scene, std::move(c)).first->second;
 }
 
 std::vector<PellucidMaterial> testMaterials(const Capture& c) {
