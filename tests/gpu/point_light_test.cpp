@@ -261,4 +261,24 @@ TEST_F(PointLights, MapsAreAsFewAsSuffice) {
   EXPECT_EQ(count(spot, PointMaps::Auto), 6u) << "half a sphere is too wide for one";
 }
 
+TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
+  Capture c = flatCapture(8, 8);
+  Light light = lamp({0, 0, -20});
+  ShadowMap map;
+  map.clipFromWorld = multiply(perspective(1, 1, {1, 50, true}), lookAt({0, 0, -20}, {0, 0, 0}, {0, 1, 0}));
+  map.depth = {Image(1, 1, 1, 5.0f), PELLUCID_DEPTH_DISTANCE};
+  light.shadowMaps.assign(9, map);
+  c.lights = {light};
+  EXPECT_NE(refusalOf([&] { replay(c, testMaterial()); }).find("lights[0].shadowMapCount is 9"),
+            std::string::npos);
+  light.shadowMaps.resize(6);
+  c.lights.assign(PELLUCID_MAX_DISPATCHES - 8, light);  // each has a dispatch, and the diffusion has some
+  EXPECT_EQ(refusalOf([&] { replay(c, testMaterial()); }), "accepted");
+  c.lights.assign(PELLUCID_MAX_DISPATCHES, light);
+  const std::string error = refusalOf([&] { replay(c, testMaterial()); });
+  EXPECT_NE(error.find("shadowImages of all 32 lights are more than the plan's 32 dispatches"),
+            std::string::npos)
+      << error;
+}
+
 }  // namespace

@@ -82,4 +82,23 @@ TEST_F(Turntable, TurningBackIsTheModelTurning) {
   }
 }
 
+TEST_F(Turntable, AutoCameraSeesEveryFrame) {
+  const Model model = triangle();
+  const Vector3 center = boundsOf(model).center;
+  std::vector<double> turns;
+  for (int i = 0; i < 12; ++i) turns.push_back(2 * std::numbers::pi * i / 12);
+  const ModelCamera camera = frameModel(model, {0, 0.4, 1}, 0.6, 1.5, false, turns);
+  for (const double angle : turns) {
+    const glm::dmat4 view = toGlm(turnedView(camera.viewFromWorld, center, angle));
+    for (const Vertex& v : model.vertices) {
+      const glm::dvec3 p = view * glm::dvec4(v.position[0], v.position[1], v.position[2], 1);
+      const double top = -p.z * std::tan(0.3);
+      EXPECT_LT(std::abs(p.y), top) << angle;
+      EXPECT_LT(std::abs(p.x), 1.5 * top) << angle;
+      EXPECT_GT(-p.z, camera.range.nearPlane) << angle;
+      EXPECT_LT(-p.z, camera.range.farPlane) << angle;
+    }
+  }
+}
+
 }  // namespace
