@@ -116,17 +116,6 @@ TEST_F(AmbientLight, HiddenIrradianceComesThrough) {
   EXPECT_TRUE(sameBits(without, replay(c, m, off)));
 }
 
-// Exposed irradiance takes ambient light of its units.
-TEST_F(AmbientLight, PreExposureScalesAmbientLight) {
-  Capture c = flatCapture(16, 12);
-  c.environment = Environment{}.harmonics();
-  ReplaySettings s = through();
-  const Image plain = replay(c, testMaterial(), s);
-  s.preExposure = 0.125f;
-  const Image exposed = replay(c, testMaterial(), s);
-  for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(exposed.at(8, 6)[k] * 8, plain.at(8, 6)[k], 1e-5f) << k;
-}
-
 // Seven of nine coefficients at once, of either sign, under a turned camera; one thickness a pixel, and
 // gathered lights beside. The head has hidden irradiance, too.
 TEST_F(AmbientLight, AgreesWithTheReference) {

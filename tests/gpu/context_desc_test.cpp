@@ -51,23 +51,7 @@ TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
     Context(device(), [](PellucidContextDesc& d) { d.options.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; });
   });
   EXPECT_NE(said.find("outputFormat is VkFormat 37"), std::string::npos) << said;
-}
-
-// Eleven bits keep 6 of the mantissa, ten 5.
-TEST_F(ContextTest, PackedFloatsAreNearHalves) {
-  if (!device().writesWithoutFormat()) GTEST_SKIP() << "the device writes no image without a format";
-  const Capture c = litSlab();
-  ReplaySettings s;
-  const Image half = replay(c, testMaterial(), s);
-  s.outputFormat = VK_FORMAT_B10G11R11_UFLOAT_PACK32;
-  const Image packed = replay(c, testMaterial(), s);
-  ASSERT_EQ(packed.channels, 3);
-  for (size_t i = 0; i < packed.pixels(); ++i)
-    for (size_t k = 0; k < 3; ++k) {
-      const float expected = half.data[4 * i + k];
-      // The irradiance was rounded to the format, too.
-      EXPECT_NEAR(packed.data[3 * i + k], expected, expected * (k == 2 ? 1.0 / 16 : 1.0 / 32)) << i;
-    }
+  EXPECT_THROW(Context(device(), [](PellucidContextDesc& d) { d.options.normalEncoding = 4; }), DeviceError);
 }
 
 TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
@@ -137,20 +121,6 @@ TEST_F(ContextTest, OptionsThatUsesLeaveOut) {
   ReplaySettings ambient;
   ambient.ambient = true;
   refuses(c, testMaterial(), ambient, "PELLUCID_USE_AMBIENT");
-}
-
-// Not as far as halves keep it.
-TEST_F(ContextTest, WideOutputsKeepAlphaToTheBit) {
-  Capture c = litSlab();
-  Image rgba(c.width, c.height, 4);
-  for (size_t i = 0; i < rgba.pixels(); ++i) {
-    for (size_t k = 0; k < 3; ++k) rgba.data[4 * i + k] = c.irradiance.data[3 * i + k];
-    rgba.data[4 * i + 3] = i % 2 == 0 ? 0.1234567f : 1e6f;
-  }
-  c.irradiance = rgba;
-  ReplaySettings s = inFloats();
-  const Image out = replay(c, testMaterial(), s);
-  for (size_t i = 0; i < out.pixels(); ++i) ASSERT_EQ(out.data[4 * i + 3], rgba.data[4 * i + 3]) << i;
 }
 
 }  // namespace

@@ -144,12 +144,6 @@ TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
   EXPECT_GT(relativeRmse(wrong, through, head().material), 0.02);
 }
 
-TEST_F(EngineFrames, UnknownNormalEncodingIsRefused) {
-  const std::string said = refusalOf(
-      [] { Context(device(), [](PellucidContextDesc& desc) { desc.options.normalEncoding = 4; }); });
-  EXPECT_NE(said.find("normalEncoding is 4"), std::string::npos) << said;
-}
-
 // ---- Materials
 
 TEST_F(EngineFrames, MaterialIndicesAmongOtherBitsGiveTheSameBits) {
@@ -261,21 +255,6 @@ TEST_F(EngineFrames, PreExposureScalesTheResult) {
     for (float& v : silent.irradiance.data) v *= factor;
     EXPECT_GT(unscaled(silent, 1), 5e-3) << factor;
   }
-}
-
-// Sunlight in lux is beyond what halves hold.
-TEST_F(EngineFrames, PreExposureKeepsSunlightInHalves) {
-  ReplaySettings s = wide();
-  s.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  const Image plain = replayer().run(head(), materialsOf(head()), s).output;
-  Capture bright = head();
-  constexpr float kLux = 131072;
-  for (float& v : bright.irradiance.data) v *= kLux;
-  for (Light& light : bright.lights) light.intensity *= kLux;
-  EXPECT_GT(relativeRmse(replayer().run(bright, materialsOf(bright), s).output, plain, bright.material), 1.0);
-  s.preExposure = 1 / kLux;
-  EXPECT_LT(relativeRmse(replayer().run(bright, materialsOf(bright), s).output, plain, bright.material),
-            1e-4);
 }
 
 // The same for captures of any unit, without being asked.

@@ -19,34 +19,9 @@ using namespace pellucid::test;
 namespace reference = pellucid::harness::reference;
 
 ReplaySettings gathering(uint32_t samples) {
-  ReplaySettings s;
+  ReplaySettings s = inFloats();
   s.translucency.gatherSamples = samples;
-  s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   return s;
-}
-
-// A ball of 6 mm and beside it an ear, 8 mm high and 2.4 mm thick. A key light from the front and a rim
-// light.
-Model ballAndEar() {
-  Model model = emptyModel();
-  addSphere(model, {-3, 0, 0}, 6, 48);
-  endPart(model, 0);
-  const std::size_t first = model.vertices.size();
-  addSphere(model, {0, 0, 0}, 1, 48);
-  endPart(model, 1);
-  constexpr std::array<float, 3> kRadii = {2.5f, 4, 1.2f}, kCenter = {6.2f, 0, 0};
-  for (std::size_t i = first; i < model.vertices.size(); ++i) {
-    Vertex& v = model.vertices[i];
-    float squared = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      v.position[c] = kCenter[c] + kRadii[c] * v.position[c];
-      v.normal[c] /= kRadii[c];
-      squared += v.normal[c] * v.normal[c];
-    }
-    for (float& n : v.normal) n /= std::sqrt(squared);
-  }
-  model.lights = {directional({0.6, -0.4, -0.7}, 2), directional({0.5, -0.2, 0.85}, 2)};
-  return model;
 }
 
 class EngineMaps : public GpuTest {
@@ -92,7 +67,7 @@ protected:
 TEST_F(EngineMaps, DepthBiasIsTakenBack) {
   const Model model = ballAndEar();
   const Capture plain = draw(model, {});
-  for (const int bits : {16, 24, 32}) {
+  for (const int bits : {16, 32}) {
     Capture c = draw(model, biased(bits));
     EXPECT_LT(c.lights[0].shadowMaps[0].depthBiasSlope, 0) << "depths are reversed";
     for (const uint32_t samples : {0u, 8u}) {
@@ -229,64 +204,6 @@ TEST_F(EngineMaps, FewBitsMakeNoSeams) {
       EXPECT_LT(worst, 0.01f * peak) << bits << " bits, samples " << samples;
     }
   }
-}
-
-// The left part of each map in full resolution, then all of it in half of that.
-TEST_F(EngineMaps, CascadesMeetWithoutASeam) {
-  const Model model = ballAndEar();
-  constexpr int kSize = 256, kWidth = 150;
-  const Capture plain = draw(model, {}, kSize), coarse = draw(model, {}, kSize / 2);
-  Capture c = plain;
-  for (std::size_t l = 0; l < c.lights.size(); ++l) {
-    ShadowMap& near = c.lights[l].shadowMaps[0];
-    const ShadowMap whole = near;
-    near.depth.image = near.exitDepth = Image(kWidth, kSize, 1);
-    near.casterMaterial.resize(std::size_t{kWidth} * kSize);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kWidth; ++x) {
-        *near.depth.image.at(x, y) = *whole.depth.image.at(x, y);
-        *near.exitDepth.at(x, y) = *whole.exitDepth.at(x, y);
-        near.casterMaterial[static_cast<std::size_t>(y * kWidth + x)] =
-            whole.casterMaterial[static_cast<std::size_t>(y * kSize + x)];
-      }
-    // ndc of the whole map -1 .. 2 kWidth / kSize - 1 becomes -1 .. 1.
-    const double scale = double(kSize) / kWidth;
-    for (std::size_t column = 0; column < 4; ++column) {
-      double& x = near.clipFromWorld[4 * column];
-      x = scale * x + (scale - 1) * near.clipFromWorld[4 * column + 3];
-    }
-    c.lights[l].shadowMaps.push_back(coarse.lights[l].shadowMaps[0]);
-  }
-  for (const uint32_t samples : {0u, 8u})
-    for (std::size_t l = 0; l < c.lights.size(); ++l) {
-      Capture one = c, reference = plain;
-      one.lights = {c.lights[l]};
-      reference.lights = {plain.lights[l]};
-      const Image image = render(one, samples), expected = render(reference, samples);
-      // The light that comes through, over the plain map's, on both sides of the border.
-      double sum[2] = {}, plainSum[2] = {};
-      const double tangent = 0.1;  // of frontCamera
-      const Matrix& clip = one.lights[0].shadowMaps[0].clipFromWorld;
-      for (int y = 0; y < c.height; ++y)
-        for (int x = 0; x < c.width; ++x) {
-          if (c.material[static_cast<std::size_t>(y * c.width + x)] == 0) continue;
-          const double p = planar(c, c.frontDepth, x, y);
-          const double wx = ((x + 0.5) / c.width * 2 - 1) * tangent * p,
-                       wy = -((y + 0.5) / c.height * 2 - 1) * tangent * p;
-          const double ndc = clip[0] * wx + clip[4] * wy + clip[8] * (100 - p) + clip[12];
-          const double pixels = std::abs(ndc - 1) / std::abs(clip[0]) / (20.0 / c.width);
-          if (pixels > 4) continue;
-          const int side = ndc > 1;
-          for (int k = 0; k < 3; ++k) {
-            sum[side] += double(image.at(x, y)[k]);
-            plainSum[side] += double(expected.at(x, y)[k]);
-          }
-        }
-      ASSERT_GT(plainSum[0], 0);
-      ASSERT_GT(plainSum[1], 0);
-      EXPECT_NEAR(sum[0] / plainSum[0], sum[1] / plainSum[1], 0.01)
-          << "samples " << samples << ", light " << l;
-    }
 }
 
 // A plane that leans across the light's rays, with what a rasterizer adds to its depths.

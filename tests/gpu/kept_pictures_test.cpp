@@ -1,14 +1,25 @@
 // Pictures that the documents show, made again: a change of a pixel is deliberate, and comes with the new
 // picture.
+#include <stb/stb_image.h>
+
 #include <cstdlib>
-#include <string>
+#include <memory>
 
 #include "cli_fixture.h"
-#include "pixels.h"
 
 namespace {
 
 using namespace pellucid::test;
+
+// The bytes of a picture.
+struct Pixels {
+  int width = 0, height = 0, channels = 0;
+  std::unique_ptr<stbi_uc, void (*)(void*)> rgb{nullptr, stbi_image_free};  // null: no picture
+
+  explicit Pixels(const std::string& file) {
+    rgb.reset(stbi_load(file.c_str(), &width, &height, &channels, 3));
+  }
+};
 
 class KeptPictures : public Cli {
 protected:

@@ -27,7 +27,6 @@ std::vector<double> table(double (*factor)(double at)) {
 }
 double line(double at) { return 1 - at; }
 double square(double at) { return at * at; }
-double one(double) { return 1; }
 // An IES profile as lamps have them: two lobes beside the axis.
 double lobes(double at) {
   return 0.95 * std::pow(std::sin(4 * std::numbers::pi * std::min(at, 0.25)), 2) + 0.05;
@@ -109,24 +108,6 @@ TEST_F(LightTables, FalloffsOfEnginesAreThoseOfTheirTables) {
   }
 }
 
-TEST_F(LightTables, ATableOfOnesChangesNothing) {
-  Capture c = makeScene(
-      {.name = "sphere", .width = 64, .height = 64, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 128});
-  for (const uint32_t samples : {0u, 8u}) {
-    ReplaySettings s = inFloats();
-    s.translucency.gatherSamples = samples;
-    const auto rendered = [&] {
-      return replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), testMaterial()), s).output;
-    };
-    c.lights[0].angleTable = {};
-    const Image plain = rendered();
-    c.lights[0].angleTable = table(one);
-    const Image ones = rendered();
-    for (size_t i = 0; i < plain.data.size(); ++i)
-      ASSERT_NEAR(ones.data[i], plain.data[i], 1e-5f * std::abs(plain.data[i])) << samples;
-  }
-}
-
 // One thickness a pixel, from maps and from the camera.
 TEST_F(LightTables, AgreeWithTheReference) {
   for (const auto type : {PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
@@ -154,43 +135,6 @@ TEST_F(LightTables, AgreeWithTheReference) {
       for (const auto& channel : metrics.channels) EXPECT_LT(channel.relativeRmse, 5e-4) << type << source;
     }
   }
-}
-
-// The gather against all texels of the map, as tests/gpu/gather_agreement_test.cpp has it for other lights.
-// Diffusion leaves constant irradiance alone.
-TEST_F(LightTables, GatheredLightIsNearAllTexels) {
-  const PellucidMaterial skin = compileMaterial(PresetMaterial{"skin1"}, "skin1");
-  Capture c = makeScene({.name = "slab",
-                         .width = 64,
-                         .height = 64,
-                         .options = {{"thickness", 2}, {"tilt", 35}, {"extent", 24}},
-                         .orthographic = false,
-                         .lightType = PELLUCID_LIGHT_SPOT,
-                         .shadowSize = 160});
-  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.2f);
-  c.albedo = {};
-  const std::vector<PellucidMaterial> materials(c.materials.size(), skin);
-  ReplaySettings s = inFloats();
-  s.translucency.gatherSamples = 16;
-  const Image plain = rgb(replayer().run(c, materials, s).output);
-  c.lights[0].angleTable = table([](double at) { return std::max(0.0, 1 - 8 * at); });
-  const Image gpu = rgb(replayer().run(c, materials, s).output);
-
-  const auto wanted = [](int x, int y) { return (x / 4 + y / 4) % 4 == 0; };
-  const Image truth = allTexels(c, materials, c.irradiance, wanted);
-  std::vector<std::uint8_t> compared(c.material);
-  for (int y = 0; y < c.height; ++y)
-    for (int x = 0; x < c.width; ++x)
-      if (!wanted(x, y)) compared[static_cast<size_t>(y * c.width + x)] = 0;
-  const auto error = [&](const Image& image) {
-    return compareImages(image, truth, comparisonMask(compared, c.irradiance, Subset::All), 4)
-        .channels[0]
-        .relativeRmse;
-  };
-  std::printf("gathered light with an angle table: %.4f of all texels; without %.4f\n", error(gpu),
-              error(plain));
-  EXPECT_LT(error(gpu), 0.03);
-  EXPECT_GT(error(plain), 0.1);
 }
 
 TEST_F(LightTables, ContextsWithoutRefuseThem) {

@@ -1,7 +1,9 @@
 // Lists of blocks change where passes run and no pixel.
-#include "gpu_fixture.h"
-
+#include <algorithm>
 #include <random>
+
+#include "gpu_fixture.h"
+#include "replay/block_map.h"
 
 namespace {
 
@@ -51,18 +53,11 @@ struct Way {
 
 constexpr Way kWays[] = {
     {"one thickness", [](ReplaySettings& s) { s.translucency.gatherSamples = 0; }},
-    {"8 samples", [](ReplaySettings&) {}},
     {"cells of 4 pixels", [](ReplaySettings& s) { s.translucency.gatherSpacing = 4; }},
-    {"cells of 2 pixels, 16 samples",
-     [](ReplaySettings& s) {
-       s.translucency.gatherSamples = 16;
-       s.translucency.gatherSpacing = 2;
-     }},
     {"a rect from odd pixels",
      [](ReplaySettings& s) {
        s.renderRect = {67, 33, 131, 90};
      }},
-    {"32 bits", [](ReplaySettings& s) { s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT; }},
     // Indices with noise around them.
     {"a material mask",
      [](ReplaySettings& s) {
@@ -127,6 +122,45 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
   EXPECT_LT(entries, 64u);
   s.indirectDispatches = 0;
   for (const char* name : kListed) EXPECT_EQ(groups(name).run, groups(name).most) << name;
+}
+
+// Material at random: the statistics, the lists and a look at each pixel agree.
+TEST_F(Lists, StatisticsAndBlocksAreThoseOfTheMaterial) {
+  constexpr int kSide = 256, kBlock = PELLUCID_STATISTICS_BLOCK;
+  for (const bool rect : {false, true}) {
+    Capture c = islands(kSide, kSide, 2);
+    c.lights.push_back(c.lights[0]);
+    ReplaySettings settings;
+    settings.translucency.gatherSamples = 8;
+    if (rect) settings.renderRect = {35, 21, 180, 171};
+    const FrameRun frame(device(), replayer().contextFor(c), c, {testMaterial()}, settings);
+    device().run([&](VkCommandBuffer commands) { frame.record(commands); });
+    const PellucidStatistics s = frame.statistics();
+    const BlockMap map = readBlockMap(frame);
+    std::vector<BlockClass> expected(map.blocks.size(), BlockClass::Empty);
+    const auto at = [&](int column, int row) -> BlockClass& {
+      return expected[static_cast<size_t>(row * map.columns + column)];
+    };
+    for (int y = map.rect[1]; y < map.rect[3]; ++y)
+      for (int x = map.rect[0]; x < map.rect[2]; ++x)
+        if (c.material[static_cast<size_t>(y * kSide + x)] != 0)
+          at((x - map.x) / kBlock, (y - map.y) / kBlock) = BlockClass::Material;
+    for (int row = 0; row < map.rows; ++row)
+      for (int column = 0; column < map.columns; ++column) {
+        if (at(column, row) != BlockClass::Material) continue;
+        for (int y = std::max(row - 1, 0); y <= std::min(row + 1, map.rows - 1); ++y)
+          for (int x = std::max(column - 1, 0); x <= std::min(column + 1, map.columns - 1); ++x)
+            at(x, y) = std::max(at(x, y), BlockClass::Near);
+      }
+    EXPECT_EQ(map.blocks, expected) << rect;
+    const auto blocks =
+        static_cast<uint64_t>(std::count(expected.begin(), expected.end(), BlockClass::Material));
+    EXPECT_GT(blocks, 1u);
+    EXPECT_EQ(s.blocks.run, blocks) << "a block is listed twice";
+    EXPECT_EQ(s.blocks.most, map.blocks.size());
+    EXPECT_GT(s.entryPoints.run, 0u);
+    EXPECT_EQ(s.entryPoints.run % 2, 0u) << "two maps that are alike";
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Models of squares, cubes and spheres for tests of the rasterizer, and the rays of their cameras.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -122,6 +123,30 @@ inline Model ballInShadow(std::uint32_t rings) {
   addSphere(model, {4.5, 0, 0}, 4, rings);
   endPart(model, 0);
   model.lights = {directional({1, 0, 0}, 3)};
+  return model;
+}
+
+// A ball of 6 mm and beside it an ear, 8 mm high and 2.4 mm thick. A key light from the front and a rim
+// light.
+inline Model ballAndEar() {
+  Model model = emptyModel();
+  addSphere(model, {-3, 0, 0}, 6, 48);
+  endPart(model, 0);
+  const std::size_t first = model.vertices.size();
+  addSphere(model, {0, 0, 0}, 1, 48);
+  endPart(model, 1);
+  constexpr std::array<float, 3> kRadii = {2.5f, 4, 1.2f}, kCenter = {6.2f, 0, 0};
+  for (std::size_t i = first; i < model.vertices.size(); ++i) {
+    Vertex& v = model.vertices[i];
+    float squared = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      v.position[c] = kCenter[c] + kRadii[c] * v.position[c];
+      v.normal[c] /= kRadii[c];
+      squared += v.normal[c] * v.normal[c];
+    }
+    for (float& n : v.normal) n /= std::sqrt(squared);
+  }
+  model.lights = {directional({0.6, -0.4, -0.7}, 2), directional({0.5, -0.2, 0.85}, 2)};
   return model;
 }
 

@@ -38,8 +38,7 @@ void PrintTo(const Scene& value, std::ostream* out) { *out << value.name; }
 const Capture& make(const Scene& scene) {
   static std::map<Scene, Capture> made;
   if (const auto found = made.find(scene); found != made.end()) return found->second;
-  return made
-      .emplace(scene, makeScene({.name = scene.name,
+  Capture c = makeScene({.name = scene.name,
                                  .width = 96,
                                  .height = 80,
                                  .orthographic = scene.orthographic,
@@ -48,8 +47,10 @@ const Capture& make(const Scene& scene) {
                                  .depthEncoding = scene.depth,
                                  .lightType = scene.light,
                                  .shadowSize = 128,
-                                 .shadowEncoding = scene.shadow}))
-      .first->second;
+                                 .shadowEncoding = scene.shadow});
+  // The picture lies in the penumbra.
+  for (Light& light : c.lights) light.innerConeAngle = 0;
+  return made.emplace(scene, std::move(c)).first->second;
 }
 
 std::vector<PellucidMaterial> testMaterials(const Capture& c) {
@@ -150,6 +151,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                                          Scene{"slab", true, false, false, PELLUCID_DEPTH_DEVICE,
                                                PELLUCID_DEPTH_DISTANCE, PELLUCID_LIGHT_SPOT},
                                          Scene{"torus"}, Scene{"two_sheets"}, Scene{"ear"}, Scene{"blades"},
+                                         // The two failures of Whelan 2009, figures 4.5 and 4.6.
+                                         Scene{"occluder"}, Scene{"blocked"}, Scene{"hollow_sphere"},
                                          Scene{"noise"}, kTiltedRows),
                          [](const auto& test) { return test.param.name + std::to_string(test.index); });
 
@@ -251,10 +254,11 @@ TEST_F(GpuTest, ShearedCamerasDiffuseAsStraightOnes) {
     ReplaySettings s = diffusionOnly();
     s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     const Image gpu = replayer().run(c, materials, s).output;
-    const Image ref = diffusionTruth(c, materials, {});
+    const std::vector<std::uint8_t> pixels = sampled(c, 3);
+    const Image ref = diffusionTruth(c, materials, pixels);
     double square = 0, of = 0;
     for (size_t i = 0; i < c.material.size(); ++i) {
-      if (cosines[i] < 0.35) continue;  // limbs have few pixels
+      if (!pixels[i] || cosines[i] < 0.35) continue;  // limbs have few pixels
       const double truth = static_cast<double>(ref.data[3 * i]),
                    off = static_cast<double>(gpu.data[4 * i]) - truth;
       square += off * off;
@@ -294,45 +298,6 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
     const Image gpu = replay(c, testMaterial(), s), ref = reference::compute(c, {testMaterial()}, r).image;
     EXPECT_LT(worst(c, gpu, ref, 3, 1, 0), 1e-3);
   }
-}
-
-// Lights of all kinds and directions, the first of them with maps.
-TEST_F(GpuTest, ManyLightsAgreeWithTheReference) {
-  std::vector<Capture> lit;  // the same view, each with another light's own map
-  for (int i = 0; i < 4; ++i) {
-    SceneParameters p{.name = "ear",
-                      .width = 32,
-                      .height = 24,
-                      .lightType = static_cast<PellucidLightType>(i % 3),
-                      .shadowSize = 64};
-    p.turn.lights = 0.2 * i;
-    lit.push_back(makeScene(p));
-  }
-  for (const size_t lights : {1u, 8u, 64u})
-    for (const size_t maps : {0u, 1u, 4u}) {
-      if (maps > lights) continue;
-      Capture c = lit[0];
-      c.lights.clear();
-      for (size_t i = 0; i < lights; ++i) {
-        Light light = lit[i % 4].lights.at(0);
-        light.intensity *= (1 + 0.1 * static_cast<double>(i % 7)) / static_cast<double>(lights);
-        light.color = {1, 0.3 + 0.1 * static_cast<double>(i % 5), 0.5};
-        if (i >= maps) light.shadowMaps.clear();
-        c.lights.push_back(light);
-      }
-      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
-      reference::Settings r;
-      r.features = s.features;
-      const std::vector<PellucidMaterial> materials = testMaterials(c);
-      const Image gpu = replayer().run(c, materials, s).output;
-      const Image ref = reference::compute(c, materials, r).image;
-      // A rounding that moves a pixel to the next texel of a map is one of some hundred pixels here.
-      EXPECT_LT(worst(c, gpu, ref, 3, 1, maps > 0 ? 0.02 : 0), 1e-3)
-          << lights << " lights, " << maps << " maps";
-      c.lights.clear();
-      EXPECT_GT(worst(c, gpu, reference::compute(c, materials, r).image, 3, 1, 0), 0.05)
-          << "they add something";
-    }
 }
 
 // Marked pixels: irradiance without translucency, and of the same material to their neighbors' diffusion.
@@ -478,24 +443,6 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
   }
 }
 
-// Pixels whose irradiance is none are black to the others.
-TEST_F(GpuTest, BadIrradianceIsBlackToBruteForce) {
-  Capture c = flatCapture(64, 48);
-  const float values[] = {std::numeric_limits<float>::quiet_NaN(), -std::numeric_limits<float>::infinity(),
-                          -1};
-  int i = 0;
-  for (int y = 3; y < c.height; y += 9)
-    for (int x = 2; x < c.width; x += 7, ++i) c.irradiance.at(x, y)[i / 3 % 3] = values[i % 3];
-  const Image truth = diffusionTruth(c, {testMaterial()}, {});
-  const Comparison d = compareImages(rgb(replay(c, testMaterial(), diffusionOnly())), truth, {});
-  for (const ChannelDifference& k : d.channels) {
-    std::printf("relative RMSE %.4f, worst %.4f\n", k.relativeRmse, k.max);
-    // A quarter above what is measured.
-    EXPECT_LT(k.relativeRmse, 0.003);
-    EXPECT_LT(k.max, 0.022);
-  }
-}
-
 // Burley's profile, 99.9 % of whose energy lies within `radius` mm.
 PellucidMaterial burley(double radius) {
   PellucidMaterialDesc desc;
@@ -524,32 +471,6 @@ TEST_F(GpuTest, KernelLargerThanTheImageKeepsItsContrast) {
   const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOnly()).output),
                                      diffusionTruth(c, {m}, pixels), pixels);
   for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, 0.0078);
-}
-
-// Where no distance says how large radii are, levels 6 and 7 are not made for smaller ones than 82 pixels,
-// though Burley's profile has something everywhere.
-TEST_F(GpuTest, RadiiNeedNotBeKnown) {
-  constexpr int kSize = 192;
-  Capture c = perspectiveCapture(kSize);
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x)
-      for (int k = 0; k < 3; ++k)
-        c.irradiance.at(x, y)[k] = x < kSize / 2 ? 0.0f : 2 + 0.1f * static_cast<float>((x * 7 + y * 13) % 5);
-  for (const double radius : {10.0, 40.0, 70.0}) {
-    const PellucidMaterial m = burley(0.5 * radius);
-    ReplaySettings s = diffusionOnly();
-    const ReplayResult unknown = replayer().run(c, {m}, s);
-    s.nearestDistance = 10;
-    const ReplayResult known = replayer().run(c, {m}, s);
-    EXPECT_EQ(coarsestUpsampled(unknown.plan), 7u);
-    EXPECT_LE(coarsestUpsampled(known.plan), 5u);
-    double sum = 0;
-    for (size_t i = 0; i < known.output.data.size(); ++i)
-      sum +=
-          std::abs(static_cast<double>(known.output.data[i]) - static_cast<double>(unknown.output.data[i]));
-    // Levels 6 and 7 have that much of the widest radius, at most.
-    EXPECT_LT(sum / static_cast<double>(known.output.data.size()), 2.2e-5) << "radius " << radius;
-  }
 }
 
 }  // namespace

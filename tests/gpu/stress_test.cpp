@@ -33,14 +33,12 @@ std::string bytesOf(const std::vector<float>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
 }
 
-// All that the frame's pictures and numbers hold.
+// Of the frame's settings, G-buffer and lights.
 std::string contents(const StressFrame& f) {
   std::string all = settingsJson(f.settings) + debugOption(f.settings);
-  for (const Image* image : {&f.capture.frontDepth.image, &f.capture.backDepth.image, &f.capture.irradiance,
-                             &f.capture.normal, &f.capture.albedo})
+  for (const Image* image : {&f.capture.frontDepth.image, &f.capture.irradiance, &f.capture.normal})
     all += bytesOf(image->data);
   all.append(f.capture.material.begin(), f.capture.material.end());
-  for (const double m : f.capture.clipFromView) all += std::to_string(m);
   for (const Light& light : f.capture.lights) {
     all += std::to_string(light.intensity);
     for (const ShadowMap& map : light.shadowMaps) all += bytesOf(map.depth.image.data);

@@ -1,7 +1,5 @@
 // Translucency computed by the shader that draws the back faces, against the fused dispatch.
 #include <cmath>
-#include <glm/glm.hpp>
-#include <numbers>
 
 #include "gpu/gpu_fixture.h"
 #include "gpu/model_builder.h"
@@ -14,54 +12,17 @@ namespace {
 using namespace pellucid::harness;
 using namespace pellucid::test;
 
-// A closed blob of about 6 mm radius with dents, so that thickness and angles vary; 1 unit is 1 mm.
-Model blob() {
-  constexpr std::uint32_t kRings = 48, kSegments = 96;
-  const auto point = [](double theta, double phi) {
-    const double r = 6 + std::sin(3 * phi) * std::pow(std::sin(theta), 3) + 0.8 * std::cos(4 * theta);
-    return glm::dvec3(r * std::sin(theta) * std::cos(phi), r * std::cos(theta),
-                      0.5 * r * std::sin(theta) * std::sin(phi));
-  };
-  Model model;
-  model.name = "blob";
-  model.metersPerUnit = 0.001;
-  model.surfaces.resize(1);
-  model.surfaces[0].material = 1;
-  model.materials.resize(1);
-  constexpr double h = 1e-4;
-  for (std::uint32_t i = 0; i <= kRings; ++i)
-    for (std::uint32_t j = 0; j < kSegments; ++j) {
-      const double theta = std::numbers::pi * i / kRings, phi = 2 * std::numbers::pi * j / kSegments;
-      const glm::dvec3 p = point(theta, phi);
-      // At the poles the angle about them says nothing; the axis does.
-      const glm::dvec3 n = i == 0 || i == kRings
-                               ? glm::dvec3(0, i == 0 ? 1 : -1, 0)
-                               : glm::normalize(glm::cross(point(theta, phi + h) - point(theta, phi - h),
-                                                           point(theta + h, phi) - point(theta - h, phi)));
-      const double outward = glm::dot(n, p) > 0 ? 1 : -1;
-      model.vertices.push_back(vertexAt({p.x, p.y, p.z}, {outward * n.x, outward * n.y, outward * n.z}));
-    }
-  for (std::uint32_t i = 0; i < kRings; ++i)
-    for (std::uint32_t j = 0; j < kSegments; ++j) {
-      const std::uint32_t a = i * kSegments + j, b = i * kSegments + (j + 1) % kSegments;
-      for (const std::uint32_t k : {a, b, a + kSegments, b, b + kSegments, a + kSegments})
-        model.indices.push_back(k);
-    }
-  model.parts = {{0, static_cast<std::uint32_t>(model.indices.size()), 0, 0}};
-
-  Light sun = backLight();
-  sun.direction = {0.3, -0.2, 1};
-  Light lamp = backLight();
-  lamp.type = PELLUCID_LIGHT_POINT;
-  lamp.position = {15, 5, -25};
-  lamp.intensity = 900;
+// With lights of all types.
+Model litBallAndEar() {
+  Model model = ballAndEar();
+  Light lamp = pointLight({15, 5, -25}, 900);
   lamp.color = {1, 0.6, 0.3};
   Light spot = lamp;
   spot.type = PELLUCID_LIGHT_SPOT;
   spot.position = {-20, 0, -25};
   spot.direction = {20, 0, 25};
   spot.outerConeAngle = 0.4;
-  model.lights = {sun, lamp, spot};
+  model.lights = {directional({0.3, -0.2, 1}, 3), lamp, spot};
   return model;
 }
 
@@ -104,7 +65,7 @@ protected:
   // Difference of the raster pass and the light that the dispatch adds to the irradiance. `apart`: values
   // further apart than 1e-3 of 5, about the peak.
   static Difference difference(bool orthographic, const RasterOptions& options, ReplaySettings settings) {
-    const Model model = blob();
+    const Model model = litBallAndEar();
     RasterResult raster = rasterize(device(), model, frontCamera(orthographic, kEye), options);
     EXPECT_EQ(raster.openPixels, 0u);
     Capture& capture = raster.capture;

@@ -1,9 +1,7 @@
 // Several views in one recording have the bits that they have alone.
 #include <array>
-#include <cstring>
 
 #include "capture/material.h"
-#include "common/owned.h"
 #include "gpu_fixture.h"
 #include "pellucid/pellucid_views.h"
 #include "scene/scene.h"
@@ -154,125 +152,6 @@ TEST_F(ViewsTest, MixturesHaveTheSameBitsTogether) {
     }
   }
 }
-
-// ---- Layers
-
-void waitForAll(VkCommandBuffer commands) {
-  const VkMemoryBarrier all{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, VK_ACCESS_MEMORY_WRITE_BIT,
-                            VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1,
-                       &all, 0, nullptr, 0, nullptr);
-}
-
-// An array of two layers with a 2D view of each, in GENERAL.
-class Layers {
-public:
-  Layers(Device& device, int width, int height, VkFormat format)
-      : device_(device), array_(device, width, height, format, 0, 2), views_{View(device), View(device)} {
-    for (uint32_t i = 0; i < 2; ++i) {
-      VkImageViewCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-      info.image = array_.handle();
-      info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-      info.format = format;
-      info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, i, 1};
-      check(vkCreateImageView(device.handle(), &info, nullptr, views_[i].receive()), "vkCreateImageView");
-    }
-    device.run([&](VkCommandBuffer commands) {
-      VkImageMemoryBarrier b{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
-      b.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-      b.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-      b.srcQueueFamilyIndex = b.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-      b.image = array_.handle();
-      b.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 2};
-      vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
-                           0, nullptr, 0, nullptr, 1, &b);
-    });
-  }
-
-  GpuImage& array() { return array_; }
-  PellucidImage layer(size_t index) const { return {views_[index], VK_IMAGE_LAYOUT_GENERAL}; }
-  Image download(uint32_t layer) const {
-    GpuImage copy(device_, array_.width(), array_.height(), array_.format());
-    copy.clear();
-    device_.run([&](VkCommandBuffer commands) {
-      waitForAll(commands);
-      VkImageCopy region{};
-      region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
-      region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-      region.extent = {static_cast<uint32_t>(array_.width()), static_cast<uint32_t>(array_.height()), 1};
-      vkCmdCopyImage(commands, array_.handle(), VK_IMAGE_LAYOUT_GENERAL, copy.handle(),
-                     VK_IMAGE_LAYOUT_GENERAL, 1, &region);
-      waitForAll(commands);
-    });
-    return copy.download();
-  }
-
-private:
-  using View = Owned<VkImageView, vkDestroyImageView>;
-  Device& device_;
-  GpuImage array_;
-  std::array<View, 2> views_;
-};
-
-// Inputs, transients and outputs of both eyes are the layers of one array each.
-TEST_F(ViewsTest, LayersOfArraysHaveTheBitsOfImages) {
-  ReplaySettings s;
-  s.translucency.gatherSamples = 0;  // each way to bind images makes llvmpipe compile shaders again
-  const Context& context = replayer().contextFor(eye(0));
-  const int width = eye(0).width, height = eye(0).height;
-  FrameData data[2];
-  std::vector<std::unique_ptr<InputImages>> shadows;
-  for (size_t i = 0; i < 2; ++i) {
-    makeFrame(eye(i), materials(eye(i)), s, data[i]);
-    // The shadow maps of these images stay in the frame.
-    shadows.push_back(std::make_unique<InputImages>(device(), eye(i), s));
-    shadows[i]->bind(data[i]);
-  }
-  std::vector<std::unique_ptr<Layers>> owned;
-  const auto add = [&](VkFormat format, int w, int h) -> Layers& {
-    return *owned.emplace_back(std::make_unique<Layers>(device(), w, h, format));
-  };
-  const auto upload = [&](PellucidImage PellucidFrame::*field, VkFormat format,
-                          const std::function<void(GpuImage&, const Capture&, int)>& content) {
-    Layers& layers = add(format, width, height);
-    for (int i = 0; i < 2; ++i) {
-      content(layers.array(), eye(static_cast<size_t>(i)), i);
-      data[i].frame.*field = layers.layer(static_cast<size_t>(i));
-    }
-    return owned.size() - 1;
-  };
-  upload(&PellucidFrame::frontDepth, VK_FORMAT_R32_SFLOAT,
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.frontDepth.image, layer); });
-  upload(&PellucidFrame::backDepth, VK_FORMAT_R32_SFLOAT,
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.backDepth.image, layer); });
-  upload(&PellucidFrame::irradiance, irradianceFormat(s),
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.irradiance, layer); });
-  upload(&PellucidFrame::normal, s.normalFormat,
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.normal, layer); });
-  upload(&PellucidFrame::albedo, VK_FORMAT_R32G32B32A32_SFLOAT,
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.albedo, layer); });
-  upload(&PellucidFrame::material, VK_FORMAT_R8_UINT,
-         [](GpuImage& to, const Capture& c, int layer) { to.upload(c.material, layer); });
-  const size_t output = upload(
-      &PellucidFrame::output, s.outputFormat,
-      [](GpuImage& to, const Capture& c, int layer) { to.upload(Image(c.width, c.height, 4), layer); });
-  PellucidImageNeed needs[kMaxImageNeeds];
-  uint32_t count = kMaxImageNeeds;
-  ASSERT_EQ(pellucidGetImageNeeds(&data[0].frame, &count, needs), PELLUCID_OK);
-  for (uint32_t t = 0; t < count; ++t) {
-    const Layers& layers =
-        add(needs[t].format, static_cast<int>(needs[t].extent[0]), static_cast<int>(needs[t].extent[1]));
-    for (size_t i = 0; i < 2; ++i) data[i].frame.transients[t] = layers.layer(i);
-  }
-  recordFrames(context, {&data[0].frame, &data[1].frame});
-  for (size_t i = 0; i < 2; ++i) {
-    const auto inputs = std::make_shared<const InputImages>(device(), eye(i), s);
-    const FrameRun run(device(), context, eye(i), materials(eye(i)), s, inputs);
-    EXPECT_TRUE(sameBits(owned[output]->download(static_cast<uint32_t>(i)), alone(run))) << "layer " << i;
-  }
-}
-
-// ---- Split screen
 
 // Two players in one image: each half is a view with a rect of its own.
 TEST_F(ViewsTest, HalvesOfOneImageHaveTheBitsOfTwo) {
