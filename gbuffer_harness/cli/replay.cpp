@@ -120,7 +120,7 @@ void writeTriptych(const Options& options, const Capture& capture,
     through.data[i] = std::max(through.data[i] - before.data[i], 0.0f);
   multiply(through, capture.albedo);
   multiply(before, capture.albedo);
-  const Image picture = sideBySide({&before, &through, &after});
+  const Image picture = contactSheet({&before, &through, &after}, 3);
   writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure, options.toneMap));
   std::printf("wrote %s (before | translucency | after)\n", options.triptych.c_str());
 }

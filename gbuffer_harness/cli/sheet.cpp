@@ -16,7 +16,6 @@
 #include "common/error.h"
 #include "common/png.h"
 #include "common/progress.h"
-#include "common/text.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "capture/material.h"
-#include "metrics/isolated.h"
+#include "metrics/eye.h"
 #include "raster/drawn_frame.h"
 #include "replay/exposure.h"
 #include "replay/inputs.h"
