@@ -27,8 +27,11 @@ Model litSphere() {
 // Counts what it is asked for.
 class CountingSource : public Source {
 public:
-  explicit CountingSource(std::unique_ptr<Source> source) : source_(std::move(source)) {}
-  ViewState start() const override { return source_->start(); }
+  explicit CountingSource(std::unique_ptr<Source> source) : source_(std::move(source)) {
+    start_ = source_->start();
+    center_ = source_->center();
+    radius_ = source_->radius();
+  }
   Scene render(const ViewState& state) override {
     ++renders;
     return source_->render(state);
@@ -36,8 +39,6 @@ public:
   std::vector<MaterialSource> materials(const ViewState& state) const override {
     return source_->materials(state);
   }
-  Vector3 center() const override { return source_->center(); }
-  double radius() const override { return source_->radius(); }
   int renders = 0;
 
 private:
