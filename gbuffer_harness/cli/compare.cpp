@@ -16,7 +16,7 @@
 #include "cli/commands.h"
 #include "cli/limits.h"
 #include "cli/metrics_json.h"
-#include "cli/preset.h"
+#include "cli/settings.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "metrics/eye.h"
