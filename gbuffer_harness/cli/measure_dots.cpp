@@ -1,4 +1,6 @@
 // `pellucid measure-dots`: a table of minimum dots, from pictures of the object lit from all around.
+#include "cli/measure_dots.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,7 +14,6 @@
 #include "capture/material.h"
 #include "cli/capture_options.h"
 #include "cli/commands.h"
-#include "cli/minimum_dot_table.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
 #include "common/progress.h"

@@ -1,5 +1,5 @@
 // `pellucid stress`: random frames through the module, and what must hold for each.
-#include "stress/stress.h"
+#include "cli/stress.h"
 
 #include <cmath>
 #include <cstdio>
@@ -12,12 +12,12 @@
 #include "capture/write.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
-#include "cli/stress_failure.h"
 #include "common/error.h"
 #include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "stress/results.h"
+#include "stress/stress.h"
 
 namespace pellucid::harness {
 namespace {

@@ -1,5 +1,5 @@
 // Measured tables of minimum dots: where entries point, and what a swing makes of known light.
-#include "cli/minimum_dot_table.h"
+#include "cli/measure_dots.h"
 
 #include <gtest/gtest.h>
 
