@@ -207,7 +207,7 @@ float staysInside(GatherRings rings, LightConstants light, Surface x, uint map, 
     // A path that begins before the depth, along the axis, at which x's own ray has left the body does not cross the gap behind it.
     float behind = rings.behindExit * rings.axisCosine, along = max(-dot(to, rings.axis), 1.0e-12);
     float crosses = rings.shadowed * clamp((along - behind) / rings.tolerance, 0.0, 1.0);
-    // Where it crosses, behind < along: the part is below a half.
+    // A path that crosses the gap has behind < along. insideAt then looks at a place less than half way from x to the lit point.
     if (crosses > 0.0) stays *= 1.0 - crosses * (1.0 - insideAt(rings, light, x, map, to, 0.5 * behind / along));
   }
   return stays;

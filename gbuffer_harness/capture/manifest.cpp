@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <glm/glm.hpp>
+#include <numbers>
 #include <sstream>
 #include <tuple>
 
@@ -12,10 +14,8 @@
 #include "capture/capture.h"
 #include "capture/exr.h"
 #include "capture/json_field.h"
-#include "capture/light_bounds.h"
-#include "capture/light_table.h"
-#include "capture/manifest_material.h"
 #include "capture/manifest_parts.h"
+#include "common/bounds.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -109,11 +109,11 @@ PellucidDepthEncoding screenEncoding(const Field& field) {
   return field["encoding"].choice({"device", "viewZ"}) == 0 ? PELLUCID_DEPTH_DEVICE : PELLUCID_DEPTH_VIEW_Z;
 }
 
-PellucidDepthEncoding shadowEncoding(const Field& field) {
-  constexpr PellucidDepthEncoding kEncodings[] = {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z,
-                                                  PELLUCID_DEPTH_DISTANCE};
-  return kEncodings[field["encoding"].choice({"device", "viewZ", "distance"})];
-}
+// Names of PellucidDepthEncoding and PellucidLightType, by their values.
+const std::vector<std::string> kEncodings = {"device", "viewZ", "distance"},
+                               kLightTypes = {"directional", "point", "spot"};
+static_assert(PELLUCID_DEPTH_DEVICE == 0 && PELLUCID_DEPTH_VIEW_Z == 1 && PELLUCID_DEPTH_DISTANCE == 2);
+static_assert(PELLUCID_LIGHT_DIRECTIONAL == 0 && PELLUCID_LIGHT_POINT == 1 && PELLUCID_LIGHT_SPOT == 2);
 
 MaterialMap readMaterialMap(const Field& field, int materialCount) {
   MaterialMap map;
@@ -146,23 +146,25 @@ void refuseScaleOfDevice(const Field& field, PellucidDepthEncoding encoding) {
     scale->fail("a device depth has no unit; the matrix says what it means");
 }
 
+constexpr double kMost = 1e15, kMostSlope = 1e6;  // of the module
+constexpr NumberField<ShadowMap> kMapNumbers[] = {
+    {"depthBiasConstant", &ShadowMap::depthBiasConstant, -kMost, kMost},
+    {"depthBiasSlope", &ShadowMap::depthBiasSlope, -kMostSlope, kMostSlope},
+    {"offsetLength", &ShadowMap::offsetLength, 0, kMost},
+    {"depthStep", &ShadowMap::depthStep, 0, kMost}};
+
 ShadowMap readShadowMap(const Field& field) {
   field.allowKeys({"file", "part", "channel", "constant", "scale", "encoding", "clipFromWorld",
                    "viewFromWorld", "exit", "casterMaterial", "offset", "size", "layer", "faces",
                    "depthBiasConstant", "depthBiasSlope", "offsetLength", "depthStep"});
   ShadowMap map;
-  map.depth.encoding = shadowEncoding(field);
+  map.depth.encoding = static_cast<PellucidDepthEncoding>(field["encoding"].choice(kEncodings));
   refuseScaleOfDevice(field, map.depth.encoding);
   map.clipFromWorld = invertible(field["clipFromWorld"]);
   if (field.has("viewFromWorld") || map.depth.encoding != PELLUCID_DEPTH_DEVICE)
     map.viewFromWorld = rigid(field["viewFromWorld"]);
   if (const auto faces = field.find("faces")) map.backFaces = faces->choice({"front", "back"}) == 1;
-  constexpr double kMost = 1e15, kMostSlope = 1e6;  // of the module
-  if (const auto bias = field.find("depthBiasConstant")) map.depthBiasConstant = bias->number(-kMost, kMost);
-  if (const auto bias = field.find("depthBiasSlope"))
-    map.depthBiasSlope = bias->number(-kMostSlope, kMostSlope);
-  if (const auto length = field.find("offsetLength")) map.offsetLength = length->number(0, kMost);
-  if (const auto step = field.find("depthStep")) map.depthStep = step->number(0, kMost);
+  readNumbers(field, kMapNumbers, map);
   if (const auto layer = field.find("layer")) map.layer = layer->integer(0, kMostLayers);
   if (const auto offset = field.find("offset")) {
     if (!field.has("size")) offset->fail("needs \"size\", the tile's size");
@@ -204,15 +206,120 @@ std::vector<Field> shadowMapsOf(const Field& light) {
   return maps;
 }
 
+// Linear between the table's factors, at a place from 0 to 1.
+double between(const std::vector<double>& table, double place) {
+  const double at = place * static_cast<double>(table.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), table.size() - 2);
+  return std::lerp(table[below], table[below + 1], at - static_cast<double>(below));
+}
+
+double placeOf(std::size_t i, std::size_t count) {
+  return static_cast<double>(i) / static_cast<double>(count - 1);
+}
+
+// Reads factors 0..1 at equal steps, two or more, as the PELLUCID_LIGHT_TABLE_ENTRIES of the module between
+// which they are linear. `error`: the largest difference from the factors that were given. Throws InputError
+// for other values, and for a light of that type.
+std::vector<double> readLightTable(const Field& field, PellucidLightType type, double& error) {
+  if (type == PELLUCID_LIGHT_DIRECTIONAL) field.fail("is of point and spot lights; the light is directional");
+  const std::vector<double> given = field.numbers(0, 1);
+  if (given.size() < 2) field.fail("needs two factors or more, has " + std::to_string(given.size()));
+  std::vector<double> table(PELLUCID_LIGHT_TABLE_ENTRIES);
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = between(given, placeOf(i, table.size()));
+  error = 0;
+  for (std::size_t i = 0; i < given.size(); ++i)
+    error = std::max(error, std::abs(between(table, placeOf(i, given.size())) - given[i]));
+  return table;
+}
+
+constexpr double kLongest = 1e15;  // of the module's lengths and intensities
+
+std::string shown(double value) {
+  std::ostringstream number;
+  number.precision(9);  // as many as tell two floats apart
+  number << value;
+  return number.str();
+}
+
 }  // namespace
+
+nlohmann::ordered_json lightJson(const Light& light) {
+  nlohmann::ordered_json json = {{"type", kLightTypes[light.type]}, {"position", light.position},
+                                 {"direction", light.direction},    {"color", light.color},
+                                 {"intensity", light.intensity},    {"range", light.range}};
+  if (light.radius > 0) json["radius"] = light.radius;
+  if (!light.angleTable.empty()) json["angleTable"] = light.angleTable;
+  if (!light.distanceTable.empty()) json["distanceTable"] = light.distanceTable;
+  if (light.type == PELLUCID_LIGHT_SPOT) {
+    json["innerConeAngle"] = light.innerConeAngle;
+    json["outerConeAngle"] = light.outerConeAngle;
+  }
+  return json;
+}
+
+void addMapJson(const ShadowMap& map, nlohmann::ordered_json& json) {
+  json["encoding"] = kEncodings[map.depth.encoding];
+  json["clipFromWorld"] = map.clipFromWorld;
+  if (map.viewFromWorld) json["viewFromWorld"] = *map.viewFromWorld;
+  if (map.backFaces) json["faces"] = "back";
+  for (const NumberField<ShadowMap>& n : kMapNumbers)
+    if (map.*n.member != 0) json[n.key] = map.*n.member;
+}
+
+void fitLight(Light& light, const std::function<void(const char* key, const std::string& sentence)>& fail) {
+  const auto fit = [&](const char* key, double& value, double most) {
+    value = fitted(value, 0, most);
+    if (!(value >= 0)) fail(key, "must not be negative, is " + shown(value));
+    if (!(value <= most)) fail(key, "must be at most " + shown(most) + ", is " + shown(value));
+  };
+  for (double& component : light.color) fit("color", component, kLongest);
+  fit("intensity", light.intensity, kLongest);
+  light.range = std::min(light.range, kLongest);  // exporters write up to FLT_MAX for unlimited lights
+  fit("range", light.range, kLongest);
+  fit("radius", light.radius, kLongest);
+  if (light.radius > 0 && light.type != PELLUCID_LIGHT_POINT)
+    fail("radius", "only a point light has one, is " + shown(light.radius));
+  if ((light.type != PELLUCID_LIGHT_POINT || !light.angleTable.empty()) &&
+      !(std::hypot(light.direction[0], light.direction[1], light.direction[2]) > 0))
+    fail("direction", "must have a length above 0");
+  if (light.type != PELLUCID_LIGHT_SPOT) return;
+  double &inner = light.innerConeAngle, &outer = light.outerConeAngle;
+  outer = fitted(outer, 0, std::numbers::pi / 2);
+  if (!(outer > roundingAt(0) && outer <= std::numbers::pi / 2))
+    fail("outerConeAngle", "must be above 0 and at most pi/2 radians, is " + shown(outer));
+  // The bound is below the outer angle by what floats can tell apart.
+  inner = fitted(inner, 0, outer);
+  if (!(inner >= 0 && inner <= outer))
+    fail("innerConeAngle",
+         "must be at least 0 and less than outerConeAngle, " + shown(outer) + ", is " + shown(inner));
+  inner = std::min(inner, outer - roundingAt(outer));
+}
+
+std::vector<std::string> coarseTables(const Capture& capture) {
+  constexpr double kVisible = 0.01;
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < capture.lights.size(); ++i) {
+    const Light& light = capture.lights[i];
+    for (const auto& [key, error, step] :
+         {std::tuple("angleTable", light.angleTableError, "180 degrees"),
+          std::tuple("distanceTable", light.distanceTableError, "the range")}) {
+      if (!(error > kVisible)) continue;
+      char sentence[200];
+      std::snprintf(sentence, sizeof sentence,
+                    "lights[%zu].%s: factors at 1/%d of %s miss the file's by up to %.2g of the most: its "
+                    "lobes are narrower",
+                    i, key, PELLUCID_LIGHT_TABLE_ENTRIES - 1, step, error);
+      sentences.emplace_back(sentence);
+    }
+  }
+  return sentences;
+}
 
 Light readLight(const Field& field) {
   field.allowKeys({"type", "position", "direction", "color", "intensity", "range", "radius", "innerConeAngle",
                    "outerConeAngle", "angleTable", "distanceTable", "shadowMap", "shadowMaps"});
   Light light;
-  constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT,
-                                          PELLUCID_LIGHT_SPOT};
-  light.type = kTypes[field["type"].choice({"directional", "point", "spot"})];
+  light.type = static_cast<PellucidLightType>(field["type"].choice(kLightTypes));
   if (field.has("position") || light.type != PELLUCID_LIGHT_DIRECTIONAL)
     light.position = field["position"].numbers<3>();
   if (field.has("direction") || field.has("angleTable") || light.type != PELLUCID_LIGHT_POINT)

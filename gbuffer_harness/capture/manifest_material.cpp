@@ -1,4 +1,4 @@
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,16 @@
 namespace pellucid::harness {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr double kMost = std::numeric_limits<float>::max();
+
+constexpr NumberField<CoefficientMaterial> kCoefficientNumbers[] = {
+    {"g", &CoefficientMaterial::g, -0.999, 0.999}, {"ior", &CoefficientMaterial::ior, 1, 4}};
+constexpr NumberField<SkinMaterial> kSkinNumbers[] = {{"melanin", &SkinMaterial::melanin, 0, 1},
+                                                      {"melaninType", &SkinMaterial::melaninType, 0, 1},
+                                                      {"hemoglobin", &SkinMaterial::hemoglobin, 0, 1},
+                                                      {"ior", &SkinMaterial::ior, 1, 3}};
 
 MaterialSource readCoefficients(const Field& field) {
   field.allowKeys({"scattering", "absorption", "g", "ior", "unit"});
@@ -29,8 +38,7 @@ MaterialSource readCoefficients(const Field& field) {
   };
   material.scattering = coefficients("scattering");
   material.absorption = coefficients("absorption");
-  if (const auto g = field.find("g")) material.g = g->number(-0.999, 0.999);
-  if (const auto ior = field.find("ior")) material.ior = ior->number(1, 4);
+  readNumbers(field, kCoefficientNumbers, material);
   return material;
 }
 
@@ -100,6 +108,8 @@ constexpr const char* kRadius = "subsurface_radius";
 constexpr const char* kRadiusScale = "subsurface_radius_scale";
 constexpr const char* kAnisotropy = "subsurface_scatter_anisotropy";
 constexpr const char* kSpecularIor = "specular_ior";
+constexpr NumberField<OpenPbrMaterial> kOpenPbrNumbers[] = {
+    {kAnisotropy, &OpenPbrMaterial::anisotropy, -0.999, 0.999}, {kSpecularIor, &OpenPbrMaterial::ior, 1, 3}};
 
 // Ranges beyond those of JSON's types are the compiler's, which names the field, too.
 MaterialSource readOpenPbr(const Field& field) {
@@ -119,18 +129,14 @@ MaterialSource readOpenPbr(const Field& field) {
     for (const double value : material.radiusScale)
       if (!(value > 0)) scale->fail("must be above 0, is " + scale->shown());
   }
-  if (const auto g = field.find(kAnisotropy)) material.anisotropy = g->number(-0.999, 0.999);
-  if (const auto ior = field.find(kSpecularIor)) material.ior = ior->number(1, 3);
+  readNumbers(field, kOpenPbrNumbers, material);
   return material;
 }
 
 MaterialSource readSkin(const Field& field) {
   field.allowKeys({"melanin", "melaninType", "hemoglobin", "ior"});
   SkinMaterial material;
-  if (const auto melanin = field.find("melanin")) material.melanin = melanin->number(0, 1);
-  if (const auto type = field.find("melaninType")) material.melaninType = type->number(0, 1);
-  if (const auto hemoglobin = field.find("hemoglobin")) material.hemoglobin = hemoglobin->number(0, 1);
-  if (const auto ior = field.find("ior")) material.ior = ior->number(1, 3);
+  readNumbers(field, kSkinNumbers, material);
   return material;
 }
 
@@ -155,7 +161,63 @@ MaterialSource readThinWall(const Field& field) {
   return material;
 }
 
+template <class... Visitors>
+struct Overloaded : Visitors... {
+  using Visitors::operator()...;
+};
+template <class... Visitors>
+Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not deduce it
+
+template <class T, std::size_t N>
+void add(const NumberField<T> (&numbers)[N], const T& object, Json& json) {
+  for (const NumberField<T>& n : numbers) json[n.key] = object.*n.member;
+}
+
 }  // namespace
+
+Json materialJson(const MaterialSource& source) {
+  return std::visit(Overloaded{
+                        [](const PresetMaterial& m) {
+                          return Json{{"preset", m.preset}};
+                        },
+                        [](const CoefficientMaterial& m) {
+                          Json json = {{"scattering", m.scattering}, {"absorption", m.absorption}};
+                          add(kCoefficientNumbers, m, json);
+                          json["unit"] = "1/mm";
+                          return json;
+                        },
+                        [](const BurleyMaterial& m) {
+                          Json json = {{"profile", "burley"}, {"distance", m.distance}};
+                          if (m.transmittance) {
+                            const char* const names[] = {"a1", "k1", "a2", "k2"};
+                            for (std::size_t i = 0; i < 4; ++i)
+                              for (const auto& channel : *m.transmittance)
+                                json["transmittance"][names[i]].push_back(channel[i]);
+                          }
+                          return json;
+                        },
+                        [](const OpenPbrMaterial& m) {
+                          Json json = {{kColor, m.color}, {kRadius, m.radius}, {kRadiusScale, m.radiusScale}};
+                          add(kOpenPbrNumbers, m, json);
+                          json["unit"] = "mm";
+                          return json;
+                        },
+                        [](const SkinMaterial& m) {
+                          Json json;
+                          add(kSkinNumbers, m, json);
+                          return json;
+                        },
+                        [](const GaussianMaterial& m) {
+                          return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
+                        },
+                        [](const ThinWallMaterial& m) {
+                          Json wall = {{"reflectance", m.reflectance}, {"transmittance", m.transmittance}};
+                          if (m.distance) wall["distance"] = *m.distance;
+                          return Json{{"thinWalled", wall}};
+                        },
+                    },
+                    source);
+}
 
 MaterialSource readMaterial(const Field& field) {
   if (field.has("preset")) {

@@ -19,71 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class... Visitors>
-struct Overloaded : Visitors... {
-  using Visitors::operator()...;
-};
-template <class... Visitors>
-Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not deduce it
-
-const char* encodingName(PellucidDepthEncoding encoding) {
-  return encoding == PELLUCID_DEPTH_DEVICE   ? "device"
-         : encoding == PELLUCID_DEPTH_VIEW_Z ? "viewZ"
-                                             : "distance";
-}
-
-}  // namespace
-
-Json materialJson(const MaterialSource& source) {
-  return std::visit(Overloaded{
-                        [](const PresetMaterial& m) {
-                          return Json{{"preset", m.preset}};
-                        },
-                        [](const CoefficientMaterial& m) {
-                          return Json{{"scattering", m.scattering},
-                                      {"absorption", m.absorption},
-                                      {"g", m.g},
-                                      {"ior", m.ior},
-                                      {"unit", "1/mm"}};
-                        },
-                        [](const BurleyMaterial& m) {
-                          Json json = {{"profile", "burley"}, {"distance", m.distance}};
-                          if (m.transmittance) {
-                            const char* const names[] = {"a1", "k1", "a2", "k2"};
-                            for (std::size_t i = 0; i < 4; ++i)
-                              for (const auto& channel : *m.transmittance)
-                                json["transmittance"][names[i]].push_back(channel[i]);
-                          }
-                          return json;
-                        },
-                        [](const OpenPbrMaterial& m) {
-                          return Json{{"subsurface_color", m.color},
-                                      {"subsurface_radius", m.radius},
-                                      {"subsurface_radius_scale", m.radiusScale},
-                                      {"subsurface_scatter_anisotropy", m.anisotropy},
-                                      {"specular_ior", m.ior},
-                                      {"unit", "mm"}};
-                        },
-                        [](const SkinMaterial& m) {
-                          return Json{{"melanin", m.melanin},
-                                      {"melaninType", m.melaninType},
-                                      {"hemoglobin", m.hemoglobin},
-                                      {"ior", m.ior}};
-                        },
-                        [](const GaussianMaterial& m) {
-                          return Json{{"gaussians", {{"variance", m.variance}, {"weight", m.weight}}}};
-                        },
-                        [](const ThinWallMaterial& m) {
-                          Json wall = {{"reflectance", m.reflectance}, {"transmittance", m.transmittance}};
-                          if (m.distance) wall["distance"] = *m.distance;
-                          return Json{{"thinWalled", wall}};
-                        },
-                    },
-                    source);
-}
-
-namespace {
-
 // Collects the channels of one part and says where they are.
 struct PartWriter {
   ExrPart part;
@@ -105,28 +40,10 @@ struct PartWriter {
   }
   Json addDepth(const DepthImage& depth, const std::string& layer) {
     Json buffer = add(depth.image, layer, "Z", ExrFormat::Float);
-    buffer["encoding"] = encodingName(depth.encoding);
+    buffer["encoding"] = depth.encoding == PELLUCID_DEPTH_DEVICE ? "device" : "viewZ";
     return buffer;
   }
 };
-
-}  // namespace
-
-Json lightJson(const Light& light) {
-  const char* const types[] = {"directional", "point", "spot"};
-  Json json = {{"type", types[light.type]}, {"position", light.position},   {"direction", light.direction},
-               {"color", light.color},      {"intensity", light.intensity}, {"range", light.range}};
-  if (light.radius > 0) json["radius"] = light.radius;
-  if (!light.angleTable.empty()) json["angleTable"] = light.angleTable;
-  if (!light.distanceTable.empty()) json["distanceTable"] = light.distanceTable;
-  if (light.type == PELLUCID_LIGHT_SPOT) {
-    json["innerConeAngle"] = light.innerConeAngle;
-    json["outerConeAngle"] = light.outerConeAngle;
-  }
-  return json;
-}
-
-namespace {
 
 Json truthJson(const Truth& truth, PartWriter& screen, ExrFormat format) {
   Json json = screen.add(truth.image, "truth", "RGB", format);
@@ -156,16 +73,7 @@ public:
     const std::array<int, 3>& of = shared_.ofMap[next_++];
     const Json& written = part({of[0], map.layer}, of, name, parts);
     Json entry = written["depth"];
-    entry["encoding"] = encodingName(map.depth.encoding);
-    entry["clipFromWorld"] = map.clipFromWorld;
-    if (map.viewFromWorld) entry["viewFromWorld"] = *map.viewFromWorld;
-    if (map.backFaces) entry["faces"] = "back";
-    const std::pair<const char*, double> offsets[] = {{"depthBiasConstant", map.depthBiasConstant},
-                                                      {"depthBiasSlope", map.depthBiasSlope},
-                                                      {"offsetLength", map.offsetLength},
-                                                      {"depthStep", map.depthStep}};
-    for (const auto& [key, value] : offsets)
-      if (value != 0) entry[key] = value;
+    addMapJson(map, entry);
     const ShadowImageSource& image = shared_.images[static_cast<std::size_t>(of[0])];
     if (map.sharedImage >= 0) {
       entry["offset"] = map.offset;

@@ -17,7 +17,7 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "raster/enclosing.h"
+#include "raster/bodies.h"
 #include "raster/framing.h"
 #include "scene/scene.h"
 #include "scene/turn.h"

@@ -100,8 +100,8 @@ double sizeOf(const Piece& piece) {
 }
 
 // mm, of each channel; none where a description does not say it.
-std::optional<std::array<double, 3>> meanFreePath(const MaterialSource& source,
-                                                  const PellucidMaterial& compiled) {
+std::optional<std::array<double, 3>> transportMeanFreePath(const MaterialSource& source,
+                                                           const PellucidMaterial& compiled) {
   std::array<double, 3> lengths{};
   if (compiled.thinWalled) return std::nullopt;
   try {
@@ -112,7 +112,8 @@ std::optional<std::array<double, 3>> meanFreePath(const MaterialSource& source,
   } catch (const InputError&) {  // a profile, or layers
   }
   for (std::size_t c = 0; c < 3; ++c) {
-    // Christensen and Burley 2015, equation 6: d is the mean free path over this factor of the albedo.
+    // Christensen and Burley 2015, equation 6: d is the transport mean free path over this factor of the
+    // albedo.
     const double off = static_cast<double>(compiled.reflectance[c]) - 0.33;
     lengths[c] = static_cast<double>(compiled.burleyDistance[c]) * (3.5 + 100 * off * off * off * off);
     if (!(lengths[c] > 0)) return std::nullopt;
@@ -155,7 +156,7 @@ std::vector<std::string> thinBodies(const Capture& capture, const std::vector<Pe
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Piece& piece = pieces[i];
     if (!piece.isWhole || !(piece.low.x <= piece.high.x)) continue;
-    const auto lengths = meanFreePath(capture.materials[i], materials[i]);
+    const auto lengths = transportMeanFreePath(capture.materials[i], materials[i]);
     if (!lengths) continue;
     const std::size_t c =
         static_cast<std::size_t>(std::max_element(lengths->begin(), lengths->end()) - lengths->begin());
@@ -166,8 +167,8 @@ std::vector<std::string> thinBodies(const Capture& capture, const std::vector<Pe
     char sentence[320];
     std::snprintf(
         sentence, sizeof sentence,
-        "materials[%zu]: the body's size, %.3g mm, is less than %g mean free paths, which are %.3g mm "
-        "each in %c: light leaves by the sides, and the body is too dark, by 11 %% at 3 paths and "
+        "materials[%zu]: the body's size, %.3g mm, is less than %g transport mean free paths, which are %.3g "
+        "mm each in %c: light leaves by the sides, and the body is too dark, by 11 %% at 3 paths and "
         "38 %% at 1",
         i, size, kFewestPaths, (*lengths)[c], "RGB"[c]);
     sentences.emplace_back(sentence);

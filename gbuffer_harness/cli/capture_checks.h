@@ -15,10 +15,10 @@ namespace pellucid::harness {
 void requireNearestDistance(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                             const ReplaySettings& settings);
 
-// A sentence for each material whose mean free path, 1 / (reduced scattering + absorption), is more than a
-// quarter of the size of the largest piece that the camera sees of it whole: the middle one of width, height
-// and thickness. Light then leaves by the sides, where T(d) of a slab and the diffusion of a half-space have
-// none. `materials`: compiled.
+// A sentence for each material whose transport mean free path, 1 / (reduced scattering + absorption), is more
+// than a quarter of a size. It is that of the material's largest piece that the camera sees whole: the middle
+// one of width, height and thickness. Light then leaves by the sides, where T(d) of a slab and the diffusion
+// of a half-space have none. `materials`: compiled.
 std::vector<std::string> thinBodies(const Capture& capture, const std::vector<PellucidMaterial>& materials);
 
 }  // namespace pellucid::harness

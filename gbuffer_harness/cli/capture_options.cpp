@@ -8,14 +8,11 @@
 #include <map>
 #include <numbers>
 
-#include "capture/light_bounds.h"
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "cli/numbers.h"
 #include "common/error.h"
 #include "raster/bodies.h"
-#include "raster/close_mesh.h"
-#include "raster/enclosing.h"
 #include "raster/framing.h"
 #include "reference/path_tracer/visible_surface.h"
 #include "scene/model.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "capture/exr.h"
-#include "capture/light_table.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/capture_checks.h"

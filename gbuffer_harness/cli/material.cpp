@@ -11,7 +11,7 @@
 #include <numbers>
 #include <optional>
 
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "cli/commands.h"
 #include "common/error.h"

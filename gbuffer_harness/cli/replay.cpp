@@ -9,9 +9,8 @@
 #include <string>
 
 #include "capture/exr.h"
-#include "capture/layers.h"
-#include "capture/light_table.h"
 #include "capture/manifest.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/capture_checks.h"

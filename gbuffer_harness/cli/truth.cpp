@@ -20,7 +20,6 @@
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "raster/bodies.h"
-#include "raster/close_mesh.h"
 #include "raster/model.h"
 #include "reference/path_tracer/emitters.h"
 #include "reference/path_tracer/light_paths.h"

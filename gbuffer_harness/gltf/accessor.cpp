@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 namespace pellucid::harness {
 
@@ -20,37 +21,17 @@ struct Elements {
 // Largest count of an accessor whose only numbers other than 0 come from a sparse part.
 constexpr std::size_t kMostZeros = 1u << 24;
 
+// 0: matrices whose columns may have padding, and unknown types.
 int componentsOf(const tinygltf::Accessor& accessor) {
-  switch (accessor.type) {
-    case TINYGLTF_TYPE_SCALAR:
-      return 1;
-    case TINYGLTF_TYPE_VEC2:
-      return 2;
-    case TINYGLTF_TYPE_VEC3:
-      return 3;
-    case TINYGLTF_TYPE_VEC4:
-      return 4;
-    case TINYGLTF_TYPE_MAT4:
-      return 16;
-    default:
-      return 0;  // smaller matrices
-  }
+  if (accessor.type == TINYGLTF_TYPE_MAT2 || accessor.type == TINYGLTF_TYPE_MAT3) return 0;
+  return std::max(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)), 0);
 }
 
+// 0: unknown types.
 std::size_t bytesOf(int componentType) {
-  switch (componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      return 0;
-  }
+  std::size_t bytes = 0;
+  withType(componentType, [&](auto value) { return (bytes = sizeof value) > 0; });
+  return bytes;
 }
 
 // Elements of a type in the bytes that hold them. `name` is what describes them, `where` what holds the
@@ -86,34 +67,20 @@ Elements elementsInView(const GltfDocument& document, int view, std::size_t byte
                     "bufferViews[" + std::to_string(view) + "]");
 }
 
-template <class T>
-double load(const unsigned char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);  // not necessarily aligned
-  return static_cast<double>(value);
-}
-
 double component(const Elements& elements, std::size_t element, int i) {
   const unsigned char* bytes = elements.first + element * elements.stride +
                                static_cast<std::size_t>(i) * bytesOf(elements.componentType);
-  // glTF 2.0, 3.6.2.2: a signed fraction's lowest value also is -1.
-  const auto fraction = [&](double value, double most) {
-    return elements.normalized ? std::max(value / most, -1.0) : value;
-  };
-  switch (elements.componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return fraction(load<std::int8_t>(bytes), 127);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return fraction(load<std::uint8_t>(bytes), 255);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return fraction(load<std::int16_t>(bytes), 32767);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return fraction(load<std::uint16_t>(bytes), 65535);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return fraction(load<std::uint32_t>(bytes), 4294967295.0);
-    default:
-      return load<float>(bytes);
-  }
+  double result = 0;
+  withType(elements.componentType, [&](auto value) {
+    std::memcpy(&value, bytes, sizeof value);  // not necessarily aligned
+    result = static_cast<double>(value);
+    // glTF 2.0, 3.6.2.2: a signed fraction's lowest value also is -1.
+    using T = decltype(value);
+    if (std::is_integral_v<T> && elements.normalized)
+      result = std::max(result / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
+    return true;
+  });
+  return result;
 }
 
 void requireUnsigned(const GltfDocument& document, int components, int componentType,

@@ -7,14 +7,231 @@
 #include <fstream>
 #include <new>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "common/error.h"
-#include "gltf/unpack.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+constexpr std::size_t kMaxDepth = 100;  // tinygltf reads extensions and extras recursively
+
+// Read, and drawn as the extension says.
+const std::set<std::string> kRead = {
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_ior",
+    "KHR_materials_scatter",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_volume_scatter",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+};
+
+// Neither change the triangles nor the diffuse color of a still.
+const std::set<std::string> kHarmless = {
+    "EXT_lights_image_based",    "KHR_animation_pointer",    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",   "KHR_materials_dispersion", "KHR_materials_emissive_strength",
+    "KHR_materials_iridescence", "KHR_materials_sheen",      "KHR_materials_specular",
+    "KHR_materials_unlit",       "KHR_materials_variants",   "KHR_xmp_json_ld",
+};
+
+struct Type {
+  const char* name;
+  bool (*holds)(const GltfJson& value);
+};
+const Type kObject{"an object", [](const GltfJson& v) { return v.is_object(); }};
+const Type kArray{"an array", [](const GltfJson& v) { return v.is_array(); }};
+const Type kString{"a string", [](const GltfJson& v) { return v.is_string(); }};
+const Type kNumber{"a number", [](const GltfJson& v) { return v.is_number(); }};
+const Type kBoolean{"true or false", [](const GltfJson& v) { return v.is_boolean(); }};
+const Type kIndex{"an integer >= 0", [](const GltfJson& v) {
+                    return v.is_number_unsigned() || (v.is_number_integer() && v.get<std::int64_t>() >= 0);
+                  }};
+
+enum class Need { None, Always, OfType };  // OfType: where the object's "type" is the path's last key
+
+// Paths that tinygltf needs to be there, or to be of a type. A step of a path is a key, keys with commas, or
+// *: every element of an array or object.
+struct Rule {
+  const char* path;
+  const Type& type;
+  Need need = Need::None;
+};
+
+constexpr Need kRequired = Need::Always;
+
+const Rule kRules[] = {
+    {"asset", kObject, kRequired},
+    {"asset.version", kString, kRequired},
+    {"scene", kIndex},
+    {"extensionsUsed,extensionsRequired", kArray},
+    {"extensionsUsed,extensionsRequired.*", kString},
+    {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials", kArray},
+    {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials.*",
+     kObject},
+    {"skins,animations", kArray},
+    {"skins,animations.*", kObject},
+    {"scenes.*.nodes", kArray},
+    {"scenes.*.nodes.*", kIndex},
+    {"nodes.*.children", kArray},
+    {"nodes.*.children.*", kIndex},
+    {"nodes.*.mesh,skin,camera", kIndex},
+    {"nodes.*.matrix,translation,rotation,scale,weights", kArray},
+    {"meshes.*.weights", kArray},
+    {"meshes.*.primitives", kArray, kRequired},
+    {"meshes.*.primitives.*", kObject},
+    {"meshes.*.primitives.*.attributes", kObject, kRequired},
+    {"meshes.*.primitives.*.attributes.*", kIndex},
+    {"meshes.*.primitives.*.indices,material,mode", kIndex},
+    {"meshes.*.primitives.*.targets", kArray},
+    {"meshes.*.primitives.*.targets.*", kObject},
+    {"meshes.*.primitives.*.targets.*.*", kIndex},
+    {"accessors.*.bufferView,byteOffset", kIndex},
+    {"accessors.*.componentType,count", kIndex, kRequired},
+    {"accessors.*.type", kString, kRequired},
+    {"accessors.*.normalized", kBoolean},
+    {"accessors.*.sparse", kObject},
+    {"accessors.*.sparse.count", kIndex, kRequired},
+    {"accessors.*.sparse.indices,values", kObject, kRequired},
+    {"accessors.*.sparse.indices,values.bufferView", kIndex, kRequired},
+    {"accessors.*.sparse.indices.componentType", kIndex, kRequired},
+    {"bufferViews.*.buffer,byteLength", kIndex, kRequired},
+    {"bufferViews.*.byteOffset,byteStride", kIndex},
+    {"buffers.*.byteLength", kIndex, kRequired},
+    {"buffers.*.uri", kString},
+    {"cameras.*.type", kString, kRequired},
+    {"cameras.*.perspective,orthographic", kObject, Need::OfType},
+    {"cameras.*.perspective.yfov,znear", kNumber, kRequired},
+    {"cameras.*.perspective.zfar,aspectRatio", kNumber},
+    {"cameras.*.orthographic.xmag,ymag,zfar,znear", kNumber, kRequired},
+    {"images.*.uri", kString},
+    {"images.*.bufferView", kIndex},
+    {"textures.*.source,sampler", kIndex},
+    {"materials.*.pbrMetallicRoughness,normalTexture,extensions", kObject},
+    {"materials.*.pbrMetallicRoughness.baseColorFactor", kArray},
+    {"materials.*.pbrMetallicRoughness.baseColorTexture", kObject},
+    {"materials.*.pbrMetallicRoughness.baseColorTexture.index", kIndex, kRequired},
+    {"materials.*.normalTexture.index", kIndex, kRequired},
+    {"materials.*.alphaMode", kString},
+    {"materials.*.alphaCutoff", kNumber},
+    {"materials.*.doubleSided", kBoolean},
+    {"extensions", kObject},
+    {"extensions.KHR_lights_punctual", kObject},
+    {"extensions.KHR_lights_punctual.lights", kArray},
+    {"extensions.KHR_lights_punctual.lights.*", kObject},
+    {"extensions.KHR_lights_punctual.lights.*.type", kString, kRequired},
+    {"extensions.KHR_lights_punctual.lights.*.spot", kObject, Need::OfType},
+};
+
+std::string shown(const GltfJson& value) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = value.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
+  return text;
+}
+
+// `rest`: the rule's path below `value`, whose own path is `field`.
+void apply(const std::string& file, const Rule& rule, const GltfJson& value, std::string_view rest,
+           const std::string& field) {
+  if (rest.empty()) {
+    if (!rule.type.holds(value)) throw InputError(file, field, shown(value) + " is not " + rule.type.name);
+    return;
+  }
+  const std::size_t dot = rest.find('.');
+  const std::string_view step = rest.substr(0, dot);
+  const std::string_view below = dot == std::string_view::npos ? std::string_view() : rest.substr(dot + 1);
+  if (step == "*") {
+    std::size_t i = 0;
+    if (value.is_array())
+      for (const GltfJson& element : value)
+        apply(file, rule, element, below, field + "[" + std::to_string(i++) + "]");
+    else if (value.is_object())
+      for (const auto& [name, element] : value.items()) apply(file, rule, element, below, field + "." + name);
+    return;
+  }
+  if (!value.is_object()) return;  // a rule of its own says so
+  for (const std::string& key : split(std::string(step), ',')) {
+    const std::string path = field.empty() ? key : field + "." + key;
+    const auto found = value.find(key);
+    if (found != value.end())
+      apply(file, rule, *found, below, path);
+    else if (below.empty() &&
+             (rule.need == Need::Always || (rule.need == Need::OfType && value["type"] == key)))
+      throw InputError(file, path, "is missing");
+  }
+}
+
+// Depth of brackets outside strings.
+void checkNesting(const std::string& file, std::string_view json) {
+  std::size_t depth = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (inString && c == '\\')
+      ++i;
+    else if (c == '"')
+      inString = !inString;
+    else if (!inString && (c == '[' || c == '{') && ++depth > kMaxDepth)
+      throw InputError(file, "", "its JSON is nested deeper than " + std::to_string(kMaxDepth) + " levels");
+    else if (!inString && (c == ']' || c == '}') && depth > 0)
+      --depth;
+  }
+}
+
+void checkRequired(const std::string& file, const GltfJson& json) {
+  const auto required = json.find("extensionsRequired");
+  if (required == json.end() || !required->is_array()) return;
+  for (const GltfJson& name : *required)
+    if (name.is_string() && !kRead.count(name) && !kHarmless.count(name))
+      throw InputError(file, "extensionsRequired", "\"" + name.get<std::string>() + "\" is not supported");
+}
+
+// Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
+// extensions that are required and not known, and properties that are missing or of another type.
+GltfJson parseGltfJson(const std::string& file, std::string_view text) {
+  checkNesting(file, text);
+  GltfJson json;
+  try {
+    json = GltfJson::parse(text);
+  } catch (const GltfJson::exception& e) {
+    throw InputError(file, "", std::string("its JSON cannot be parsed: ") + e.what());
+  }
+  if (!json.is_object()) throw InputError(file, "", "its JSON is not an object");
+  checkRequired(file, json);
+  for (const Rule& rule : kRules) apply(file, rule, json, rule.path, "");
+  return json;
+}
+
+// The document without what this program reads itself and tinygltf is stricter about than glTF: animations
+// and skins, buffers that only stand in for compressed ones, and indices that lie in a Draco stream.
+GltfJson forTinyGltf(const GltfJson& json) {
+  GltfJson result = json;
+  result.erase("animations");
+  result.erase("skins");
+  if (const auto buffers = result.find("buffers"); buffers != result.end())
+    for (GltfJson& buffer : *buffers)
+      if (isFallbackBuffer(buffer))
+        buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+  const auto accessors = result.find("accessors");
+  if (accessors == result.end() || !result.contains("meshes")) return result;
+  for (const GltfJson& mesh : result["meshes"])
+    for (const GltfJson& primitive : mesh["primitives"]) {
+      const auto indices = primitive.find("indices");
+      if (indices == primitive.end() || !extensionOf(primitive, "KHR_draco_mesh_compression")) continue;
+      const std::size_t i = *indices;
+      // tinygltf takes no indices without a view. The stream's indices take precedence over the view's.
+      if (i < accessors->size() && !(*accessors)[i].contains("bufferView")) (*accessors)[i]["bufferView"] = 0;
+    }
+  return result;
+}
 
 namespace fs = std::filesystem;
 
@@ -209,6 +426,19 @@ void checkBuffers(const GltfDocument& document, Session& session, std::size_t bi
 }
 
 }  // namespace
+
+const GltfJson* extensionOf(const GltfJson& value, const char* name) {
+  const auto extensions = value.find("extensions");
+  if (extensions == value.end() || !extensions->is_object()) return nullptr;
+  const auto found = extensions->find(name);
+  return found != extensions->end() && found->is_object() ? &*found : nullptr;
+}
+
+bool isFallbackBuffer(const GltfJson& buffer) {
+  return !buffer.contains("uri") && extensionOf(buffer, "EXT_meshopt_compression");
+}
+
+bool isDrawn(const std::string& extension) { return kRead.count(extension) != 0; }
 
 void GltfDocument::fail(const std::string& field, const std::string& sentence) const {
   throw InputError(file, field, sentence);

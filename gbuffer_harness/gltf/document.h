@@ -1,16 +1,27 @@
-// A glTF file parsed by tinygltf, with what it refers to in memory and nothing of it trusted.
+// A glTF file parsed by tinygltf, with what it refers to in memory and nothing of it trusted. Its JSON is
+// checked before anything else reads it, and made ready for tinygltf.
 #pragma once
 
 #include <tiny_gltf.h>
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "gltf/json.h"
-
 namespace pellucid::harness {
+
+using GltfJson = nlohmann::json;
+
+// True if files that use the extension are drawn as the extension asks.
+bool isDrawn(const std::string& extension);
+
+// True if a buffer only stands in for what its views hold compressed elsewhere (EXT_meshopt_compression).
+bool isFallbackBuffer(const GltfJson& buffer);
+
+// The extension of that name; NULL: `value` does not have it as an object.
+const GltfJson* extensionOf(const GltfJson& value, const char* name);
 
 struct GltfDocument {
   std::string file;  // for messages
@@ -45,5 +56,10 @@ struct GltfDocument {
 // Throws InputError for files that are not glTF 2.0, truncated, nested too deeply or larger than 1 GiB, and
 // for URIs that leave the file's folder.
 GltfDocument readGltf(const std::filesystem::path& path);
+
+// Fills document.views and document.accessors with what EXT_meshopt_compression and
+// KHR_draco_mesh_compression hold compressed. Throws InputError naming the view or primitive whose stream
+// does not decode to what the file says of it.
+void unpack(GltfDocument& document);
 
 }  // namespace pellucid::harness

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture/light_bounds.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "common/error.h"
 #include "common/far_origin.h"

@@ -13,8 +13,8 @@ namespace pellucid::harness {
 
 struct GltfOptions {
   double metersPerUnit = 1;  // glTF's own unit is the meter
-  // glTF material name -> preset of the material compiler, a manifest's material in braces, or "thin:R,G,B", a
-  // thin wall's transmittance, instead of what the file says. "*": every material that is not named;
+  // glTF material name -> preset of the material compiler, a manifest's material in braces, or "thin:R,G,B",
+  // a thin wall's transmittance, instead of what the file says. "*": every material that is not named;
   // "default": triangles without a material.
   std::map<std::string, std::string> presets;
   double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "common/parse.h"
 #include "pellucid/pellucid_material.h"
@@ -14,7 +15,379 @@ namespace pellucid::harness {
 
 namespace {
 
+// Result of KHR_materials_volume, _volume_scatter, _diffuse_transmission, _scatter and _transmission;
+// docs/captures.md.
+struct Scattering {
+  std::optional<MaterialSource> medium;  // nothing: opaque
+  std::optional<LobeMap> map;
+};
+
 using Rgb = std::array<double, 3>;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
+                     *kTransmission = "KHR_materials_transmission", *kVolume = "KHR_materials_volume",
+                     *kVolumeScatter = "KHR_materials_volume_scatter", *kScatter = "KHR_materials_scatter",
+                     *kIor = "KHR_materials_ior";
+
+// An attenuation color of 0 or 1 would be an infinite or no coefficient.
+constexpr double kDarkest = 1e-4, kClearest = 0.999;
+
+// The albedo is the color of light that comes through, so that of a thin wall's lobes the ratio counts, which
+// is 1.
+constexpr Rgb kHalf = {0.5, 0.5, 0.5};
+
+// A profile too narrow to see, for media that do not scatter, mm.
+constexpr double kNoDiffusion = 1e-3;
+// T(d) has to fall to 0 in the end, 1/mm.
+constexpr double kSlowestDecay = 1e-6;
+// The compiler's bound on a phase function's mean cosine.
+constexpr double kLargestG = 0.999;
+
+bool isBlack(const Rgb& color) {
+  return std::all_of(color.begin(), color.end(), [](double v) { return v == 0; });
+}
+
+// The texture of an object in the file's JSON, as "baseColorTexture" of pbrMetallicRoughness; nothing without
+// one.
+std::optional<TextureUse> readTextureUse(const GltfDocument& document, const GltfJson& object,
+                                         const char* key, const std::string& field) {
+  const auto found = object.find(key);
+  if (found == object.end()) return std::nullopt;
+  TextureUse use;
+  use.field = field + "." + key;
+  const auto index = found->is_object() ? found->find("index") : found->end();
+  if (!found->is_object() || index == found->end() || !index->is_number_unsigned())
+    document.fail(use.field + ".index", "is missing or not an integer >= 0");
+  use.texture = static_cast<int>(std::min<std::uint64_t>(index->get<std::uint64_t>(), 1u << 30));
+  use.coord = readTexCoord(document, *found, use.field);
+  return use;
+}
+
+// The numbers of one extension object.
+class Extension {
+public:
+  Extension(const GltfDocument& document, std::string field, const GltfJson& value)
+      : document_(document), field_(std::move(field)), value_(value) {}
+
+  double number(const char* key, double absent, double least, double most) const {
+    const auto found = value_.find(key);
+    return found == value_.end() ? absent : checked(key, *found, least, most);
+  }
+  Rgb color(const char* key, const Rgb& absent) const {
+    const auto found = value_.find(key);
+    if (found == value_.end()) return absent;
+    if (!found->is_array() || found->size() != 3)
+      document_.fail(field_ + "." + key, "is not an array of 3 numbers");
+    Rgb rgb;
+    for (std::size_t i = 0; i < 3; ++i) rgb[i] = checked(key, (*found)[i], 0, 1);
+    return rgb;
+  }
+  bool has(const char* key) const { return value_.contains(key); }
+  std::optional<TextureUse> texture(const char* key) const {
+    return readTextureUse(document_, value_, key, field_);
+  }
+  const std::string& field() const { return field_; }
+
+private:
+  double checked(const char* key, const GltfJson& value, double least, double most) const {
+    if (!value.is_number()) document_.fail(field_ + "." + key, "is not a number");
+    const double number = value;
+    if (!(number >= least && number <= most)) {
+      const std::string range = most < kInfinity ? std::to_string(least) + " .. " + std::to_string(most)
+                                                 : std::to_string(least) + " upwards";
+      document_.fail(field_ + "." + key, std::to_string(number) + " is outside " + range);
+    }
+    return number;
+  }
+
+  const GltfDocument& document_;
+  std::string field_;
+  const GltfJson& value_;
+};
+
+void multiply(Rgb& color, const Rgb& by) {
+  for (std::size_t i = 0; i < 3; ++i) color[i] *= by[i];
+}
+void scale(Rgb& color, double by) { multiply(color, {by, by, by}); }
+
+// Reads the extensions of one material.
+class Reader {
+public:
+  Reader(const GltfDocument& document, std::size_t material, const std::string& name, double metersPerUnit,
+         Surface& surface, std::vector<std::string>& warnings)
+      : document_(document),
+        json_(document.json["materials"][material]),
+        field_("materials[" + std::to_string(material) + "]"),
+        name_(name),
+        metersPerUnit_(metersPerUnit),
+        surface_(surface),
+        warnings_(warnings) {}
+
+  Scattering read();
+
+private:
+  std::optional<Extension> find(const char* extension) const {
+    const auto extensions = json_.find("extensions");
+    if (extensions == json_.end() || !extensions->contains(extension)) return std::nullopt;
+    const std::string field = field_ + ".extensions." + extension;
+    const GltfJson& value = (*extensions)[extension];
+    if (!value.is_object()) document_.fail(field, "is not an object");
+    return Extension(document_, field, value);
+  }
+  void warn(const std::string& sentence) { warnings_.push_back("material \"" + name_ + "\": " + sentence); }
+  void readVolume();
+  void setMap(const std::vector<std::optional<TextureUse>>& colors,
+              const std::optional<TextureUse>& strength);
+  Rgb mean() const { return result_.map ? result_.map->mean : Rgb{1, 1, 1}; }
+  Rgb extinction() const;
+  double boundaryIor() const;
+  void setThinWall();
+  void setAbsorbing();
+  void setScattering(const Rgb& multiscatter, double strength, double phaseG, double g, double ior);
+  void readDiffuse(const Extension& diffuse);
+  void readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse);
+  void readScatter(const Extension& scatter, const Extension& transmission);
+  void readThinScatter(const Extension& scatter, double transmission, double strength);
+
+  const GltfDocument& document_;
+  const GltfJson& json_;
+  std::string field_, name_;
+  double metersPerUnit_;
+  Surface& surface_;
+  std::vector<std::string>& warnings_;
+  Scattering result_;
+  bool isVolume_ = false;  // KHR_materials_volume with a thickness
+  double distance_ = kInfinity;
+  Rgb attenuation_ = {1, 1, 1};
+};
+
+void Reader::readVolume() {
+  const auto volume = find(kVolume);
+  if (!volume) return;
+  isVolume_ = volume->number("thicknessFactor", 0, 0, kInfinity) > 0;
+  distance_ = volume->number("attenuationDistance", kInfinity, 0, kInfinity);
+  attenuation_ = volume->color("attenuationColor", attenuation_);
+  if (!(distance_ > 0)) document_.fail(volume->field() + ".attenuationDistance", "is 0");
+  if (!isVolume_) warn("KHR_materials_volume.thicknessFactor is 0, which means a thin wall without a medium");
+}
+
+// Extinction, 1/mm, from the fraction of light that gets through attenuationDistance.
+Rgb Reader::extinction() const {
+  const double millimeters = distance_ * metersPerUnit_ * 1000;
+  Rgb sigma;
+  for (std::size_t i = 0; i < 3; ++i)
+    sigma[i] = -std::log(std::clamp(attenuation_[i], kDarkest, kClearest)) / millimeters;
+  return sigma;
+}
+
+double Reader::boundaryIor() const {
+  const auto ior = find(kIor);
+  return ior ? std::max(ior->number("ior", 1.5, 0, 3), 1.0) : 1.5;
+}
+
+void Reader::setMap(const std::vector<std::optional<TextureUse>>& colors,
+                    const std::optional<TextureUse>& strength) {
+  std::vector<TextureUse> there;
+  for (const auto& color : colors)
+    if (color) there.push_back(*color);
+  result_.map = readLobeMap(document_, there, strength, warnings_);
+}
+
+// A thin wall, in the color of the lobe.
+void Reader::setThinWall() {
+  result_.medium = ThinWallMaterial{kHalf, kHalf, {}};
+  surface_.lobes = SurfaceLobes::Apart;
+}
+
+// Light enters and leaves diffusely and is only absorbed on the way: T = e^{-sigma_a d}, in the color of the
+// lobe.
+void Reader::setAbsorbing() {
+  const Rgb sigma = distance_ < kInfinity ? extinction() : Rgb{};
+  BurleyMaterial medium{{kNoDiffusion, kNoDiffusion, kNoDiffusion}, {{}}};
+  for (std::size_t i = 0; i < 3; ++i)
+    (*medium.transmittance)[i] = {1, std::max(sigma[i], kSlowestDecay), 0, kSlowestDecay};
+  result_.medium = medium;
+  surface_.lobes = SurfaceLobes::Apart;
+}
+
+// phaseG: of the albedo's inversion. Textures make no difference within a medium: it has their mean.
+void Reader::setScattering(const Rgb& multiscatter, double strength, double phaseG, double g, double ior) {
+  CoefficientMaterial medium{};
+  const Rgb sigma = extinction(), textured = mean();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double albedo = singleScatteringAlbedo(strength * multiscatter[i] * textured[i], phaseG);
+    medium.scattering[i] = albedo * sigma[i];
+    medium.absorption[i] = (1 - albedo) * sigma[i];
+  }
+  medium.g = std::clamp(g, -kLargestG, kLargestG);
+  medium.ior = ior;
+  result_.medium = medium;
+}
+
+// The light that does not enter is reflected with the base color.
+void Reader::readDiffuse(const Extension& diffuse) {
+  const double factor = diffuse.number("diffuseTransmissionFactor", 0, 0, 1);
+  surface_.addedColor = diffuse.color("diffuseTransmissionColorFactor", {1, 1, 1});
+  if (factor == 0) warn("diffuseTransmissionFactor is 0, its default: no light comes through");
+  if (isBlack(surface_.addedColor)) warn("diffuseTransmissionColorFactor is black: no light comes through");
+  if (factor == 0) {
+    surface_.addedColor = {0, 0, 0};
+    return;
+  }
+  setMap({diffuse.texture("diffuseTransmissionColorTexture")}, diffuse.texture("diffuseTransmissionTexture"));
+  scale(surface_.addedColor, factor);
+  surface_.displaced = factor;
+  isVolume_ ? setAbsorbing() : setThinWall();
+}
+
+void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse) {
+  // The name before the extension was ratified.
+  const bool old = scatter.has("multiscatterColor") && !scatter.has("multiscatterColorFactor");
+  const Rgb multiscatter = scatter.color(old ? "multiscatterColor" : "multiscatterColorFactor", {0, 0, 0});
+  const double g = scatter.number("scatterAnisotropy", 0, -kLargestG, kLargestG);
+  if (!isVolume_ || !(distance_ < kInfinity)) {
+    warn(
+        "KHR_materials_volume_scatter needs KHR_materials_volume with thicknessFactor > 0 and a finite "
+        "attenuationDistance; it is drawn opaque");
+    return;
+  }
+  double entering = 1;
+  std::optional<TextureUse> strength, color;
+  surface_.addedColor = {1, 1, 1};
+  if (diffuse) {
+    entering = diffuse->number("diffuseTransmissionFactor", 0, 0, 1);
+    surface_.addedColor = diffuse->color("diffuseTransmissionColorFactor", {1, 1, 1});
+    strength = diffuse->texture("diffuseTransmissionTexture");
+    color = diffuse->texture("diffuseTransmissionColorTexture");
+  } else if (const auto transmission = find(kTransmission)) {
+    entering = transmission->number("transmissionFactor", 0, 0, 1);
+  }
+  if (entering == 0) {
+    entering = 1;
+    strength.reset();
+    if (diffuse)
+      warn("diffuseTransmissionFactor is 0, its default: 1 is taken, so that light enters the medium");
+  }
+  if (isBlack(multiscatter))
+    warn(std::string("KHR_materials_volume_scatter.") +
+         (old ? "multiscatterColor" : "multiscatterColorFactor") + " is black: the medium only absorbs");
+  else if (isBlack(surface_.addedColor))
+    warn("diffuseTransmissionColorFactor is black: no light comes back from the medium");
+  const auto scatterTexture = scatter.texture("multiscatterColorTexture");
+  setMap({scatterTexture}, std::nullopt);
+  setScattering(multiscatter, 1, 0, g, diffuse ? 1 : boundaryIor());
+  setMap({color, scatterTexture}, strength);
+  multiply(surface_.addedColor, multiscatter);
+  scale(surface_.addedColor, entering);
+  if (strength) {
+    surface_.displaced = entering;
+  } else {
+    scale(surface_.baseColor, 1 - entering);
+  }
+  if (strength || entering < 1) {
+    surface_.lobes = SurfaceLobes::Apart;
+    surface_.backscatter = 1;
+  }
+}
+
+void Reader::readThinScatter(const Extension& scatter, double transmission, double strength) {
+  const double g = scatter.number("scatterAnisotropy", 0, -1, 1);
+  const double forward = (1 + g) / 2;
+  if (isBlack(surface_.addedColor))
+    warn("KHR_materials_scatter.multiscatterColorFactor is black: what scatters is lost");
+  scale(surface_.baseColor, 1 - transmission);
+  scale(surface_.addedColor, transmission * strength * (forward > 0 ? forward : 1));
+  if (!(forward > 0)) {
+    warn("KHR_materials_scatter.scatterAnisotropy is -1: a thin wall only reflects, and is drawn opaque");
+    return;
+  }
+  surface_.backscatter = (1 - g) / (1 + g);
+  setThinWall();
+}
+
+void Reader::readScatter(const Extension& scatter, const Extension& transmission) {
+  const double entering = transmission.number("transmissionFactor", 0, 0, 1);
+  const double strength = scatter.number("scatterStrengthFactor", 0, 0, 1);
+  const Rgb multiscatter = scatter.color("multiscatterColorFactor", {1, 1, 1});
+  if (transmission.has("transmissionTexture"))
+    warn("KHR_materials_transmission.transmissionTexture is ignored, its factor is not");
+  if (entering == 0 || strength == 0) {
+    warn(std::string("KHR_materials_scatter has no effect: ") +
+         (entering == 0 ? "KHR_materials_transmission.transmissionFactor is 0, its default"
+                        : "scatterStrengthFactor is 0, its default"));
+    return;
+  }
+  if (isVolume_ && !(distance_ < kInfinity)) {
+    warn(
+        "KHR_materials_scatter has no effect: a volume without KHR_materials_volume.attenuationDistance is "
+        "clear");
+    return;
+  }
+  const auto strengthTexture = scatter.texture("scatterStrengthTexture"),
+             color = scatter.texture("multiscatterColorTexture");
+  surface_.addedColor = multiscatter;
+  setMap({color}, strengthTexture);
+  if (!isVolume_) return readThinScatter(scatter, entering, strength);
+  const double g = scatter.number("scatterAnisotropy", 0, -1, 1);
+  setScattering(multiscatter, strength, std::clamp(g, -kLargestG, kLargestG), g, boundaryIor());
+  if (isBlack(multiscatter))
+    warn("KHR_materials_scatter.multiscatterColorFactor is black: the medium only absorbs");
+  // Light passes the surface's color as it enters and as it leaves.
+  if (isBlack(surface_.baseColor))
+    warn("pbrMetallicRoughness.baseColorFactor is black: no light enters what KHR_materials_scatter fills");
+  const Rgb base = surface_.baseColor;
+  multiply(surface_.addedColor, base);
+  multiply(surface_.addedColor, base);
+  scale(surface_.addedColor, entering * strength);
+  const GltfJson metallic = json_.value("pbrMetallicRoughness", GltfJson::object());
+  if (const auto texture =
+          readTextureUse(document_, metallic, "baseColorTexture", field_ + ".pbrMetallicRoughness"))
+    setMap({color, texture, texture}, strengthTexture);
+  scale(surface_.baseColor, 1 - entering);
+  if (entering < 1) {
+    surface_.lobes = SurfaceLobes::Apart;
+    surface_.backscatter = 1;
+  }
+}
+
+Scattering Reader::read() {
+  readVolume();
+  const auto diffuse = find(kDiffuse), transmission = find(kTransmission), scatter = find(kScatter),
+             volumeScatter = find(kVolumeScatter);
+  if (scatter && diffuse)
+    warn("KHR_materials_scatter excludes KHR_materials_diffuse_transmission, and is ignored");
+  else if (scatter && !transmission)
+    warn("KHR_materials_scatter has no effect without KHR_materials_transmission");
+  if (volumeScatter)
+    readVolumeScatter(*volumeScatter, diffuse);
+  else if (diffuse)
+    readDiffuse(*diffuse);
+  else if (scatter && transmission)
+    readScatter(*scatter, *transmission);
+  else if (isVolume_ && !scatter)
+    warn(
+        "a clear medium without KHR_materials_diffuse_transmission, _volume_scatter or _scatter is not "
+        "subsurface scattering; it is drawn opaque");
+  return std::move(result_);
+}
+
+// A thin wall that transmits this color, and reflects the base color of the rest.
+Scattering thinWall(const std::array<double, 3>& transmittance, Surface& surface) {
+  for (std::size_t i = 0; i < 3; ++i) surface.baseColor[i] *= 1 - transmittance[i];
+  surface.addedColor = transmittance;
+  surface.lobes = SurfaceLobes::Apart;
+  return {ThinWallMaterial{kHalf, kHalf, {}}, {}};
+}
+
+// `name`: the material's, for warnings. `surface`: with the base color; gets its lobes. Adds a sentence to
+// `warnings` for a property by which a scattering material ends up black, opaque or otherwise than asked.
+// Throws InputError naming the field.
+Scattering readScattering(const GltfDocument& document, std::size_t material, const std::string& name,
+                          double metersPerUnit, Surface& surface, std::vector<std::string>& warnings) {
+  return Reader(document, material, name, metersPerUnit, surface, warnings).read();
+}
 
 // Base colors that nobody chose: glTF's default, and that of Blender's Principled BSDF, which its exporter
 // writes.
@@ -56,6 +429,12 @@ std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::st
 }
 
 }  // namespace
+
+double singleScatteringAlbedo(double multiscatter, double g) {
+  const double m = std::clamp(multiscatter, 0.0, 1.0);
+  const double s = 4.09712 + 4.20863 * m - std::sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
+  return std::clamp((1 - s * s) / (1 - g * s * s), 0.0, 1.0);
+}
 
 std::string materialName(const GltfDocument& document, int index) {
   if (index < 0) return "default";

@@ -1,4 +1,5 @@
-// glTF materials as surfaces to draw and media for the material compiler.
+// glTF materials as surfaces to draw and media for the material compiler, and what their extensions say of
+// the light that enters.
 #pragma once
 
 #include <array>
@@ -8,9 +9,15 @@
 
 #include "gltf/document.h"
 #include "gltf/gltf.h"
-#include "gltf/volume.h"
+#include "gltf/texture.h"
+#include "raster/model.h"
 
 namespace pellucid::harness {
+
+// Kulla & Conty 2017, as KHR_materials_scatter prints it: the single-scattering albedo whose half-space,
+// without Fresnel boundaries, reflects `multiscatter`, in [0, 1], where the phase function has the mean
+// cosine `g`.
+double singleScatteringAlbedo(double multiscatter, double g = 0);
 
 struct GltfMaterial {
   Surface surface;  // without its material index and textures

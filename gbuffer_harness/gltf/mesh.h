@@ -1,15 +1,31 @@
-// Triangles of glTF meshes in world space.
+// Triangles of glTF meshes in world space: vertex attributes, with texture coordinates transformed and morph
+// targets added.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <string>
 #include <vector>
 
-#include "gltf/attributes.h"
 #include "gltf/document.h"
 #include "raster/model.h"
 
 namespace pellucid::harness {
+
+// Source of a texture's coordinates.
+struct TexCoord {
+  int set = -1;             // the n of TEXCOORD_n; -1: there is no texture
+  glm::dmat3 transform{1};  // KHR_texture_transform; of (u, v, 1)
+  bool operator==(const TexCoord&) const = default;
+};
+
+// Those of a surface's textures.
+struct TexCoords {
+  TexCoord color, normal, lobe;
+};
+
+// Reads the set and the transform of a texture info in the file's JSON (baseColorTexture and its like).
+TexCoord readTexCoord(const GltfDocument& document, const GltfJson& textureInfo, const std::string& field);
 
 // How a mesh stands in the world.
 struct MeshPose {

@@ -1,4 +1,4 @@
-#include "gltf/unpack.h"
+#include "gltf/accessor.h"
 
 #include <draco/compression/decode.h>
 #include <meshoptimizer.h>
@@ -109,27 +109,6 @@ void convertFaces(const draco::Mesh& mesh, std::vector<unsigned char>& bytes) {
       const auto index = static_cast<T>(point.value());
       append(bytes, &index, 1);
     }
-}
-
-// Calls visit with a value of the component type; false: there is no such type.
-template <class Visit>
-bool withType(int componentType, const Visit& visit) {
-  switch (componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return visit(std::int8_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return visit(std::uint8_t());
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return visit(std::int16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return visit(std::uint16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return visit(std::uint32_t());
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return visit(float());
-    default:
-      return false;
-  }
 }
 
 // An accessor that a stream fills; its own count has to be what the stream holds.

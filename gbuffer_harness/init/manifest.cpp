@@ -6,7 +6,6 @@
 #include <glm/glm.hpp>
 
 #include "capture/manifest.h"
-#include "capture/manifest_material.h"
 #include "capture/manifest_parts.h"
 #include "common/error.h"
 #include "reference/camera.h"

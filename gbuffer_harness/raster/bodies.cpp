@@ -5,16 +5,63 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
-#include "raster/places.h"
+#include "common/error.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+// One number for all vertices at one position, so that seams of texture coordinates do not cut a mesh.
+std::vector<std::uint32_t> placesOf(const Model& model) {
+  std::map<std::array<float, 3>, std::uint32_t> numbers;
+  std::vector<std::uint32_t> places;
+  for (const Vertex& vertex : model.vertices) {
+    std::array<float, 3> position = vertex.position;
+    for (float& x : position) x += 0.0f;  // -0 is 0
+    places.push_back(numbers.emplace(position, static_cast<std::uint32_t>(numbers.size())).first->second);
+  }
+  return places;
+}
+
+glm::dvec3 positionOf(const Vertex& vertex) {
+  return {vertex.position[0], vertex.position[1], vertex.position[2]};
+}
+
+// Of Model::indices[index].
+glm::dvec3 cornerOf(const Model& model, std::uint32_t index) {
+  return positionOf(model.vertices[model.indices[index]]);
+}
+
+// Signed solid angle of the triangle of Model::indices from `first` on, as seen from the point. Van Oosterom
+// & Strackee 1983, "The solid angle of a plane triangle".
+double solidAngle(const Model& model, std::uint32_t first, const glm::dvec3& from) {
+  const glm::dvec3 a = cornerOf(model, first) - from, b = cornerOf(model, first + 1) - from,
+                   c = cornerOf(model, first + 2) - from;
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
+}
+
+// Of a whole part.
+double solidAngle(const Model& model, const Part& part, const glm::dvec3& from) {
+  double angle = 0;
+  for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3)
+    angle += solidAngle(model, i, from);
+  return angle;
+}
+
+// A closed surface spans 4 pi from each point inside and 0 from outside or from a hollow. A bowl spans up to
+// half of it where nothing encloses a point; the eighth that may be missing is that of meshes with small
+// holes.
+constexpr double kEnclosed = 0.875 * 4 * std::numbers::pi;
 
 // Parts that are closer than this share of the smaller one's diagonal touch: seams err by what their meshes
 // miss of one curve.
@@ -159,12 +206,8 @@ public:
   }
 
 private:
-  glm::dvec3 corner(std::uint32_t index) const {
-    const std::array<float, 3>& p = model_.vertices[model_.indices[index]].position;
-    return {p[0], p[1], p[2]};
-  }
   Triangle triangle(std::uint32_t first) const {
-    return {corner(first), corner(first + 1), corner(first + 2)};
+    return {cornerOf(model_, first), cornerOf(model_, first + 1), cornerOf(model_, first + 2)};
   }
 
   void findPieces(const std::vector<std::uint32_t>& triangles, const std::vector<std::uint8_t>& materials) {
@@ -202,12 +245,9 @@ private:
   // The hollow of a body is a piece of its own.
   bool isInside(const Piece& inner, const Piece& outer) const {
     if (!outer.box.contains(inner.box)) return false;
-    const glm::dvec3 point = corner(inner.triangles.front());
+    const glm::dvec3 point = cornerOf(model_, inner.triangles.front());
     double angle = 0;
-    for (const std::uint32_t first : outer.triangles) {
-      const Triangle t = triangle(first);
-      angle += solidAngle(t[0] - point, t[1] - point, t[2] - point);
-    }
+    for (const std::uint32_t first : outer.triangles) angle += solidAngle(model_, first, point);
     return std::abs(angle) > kEnclosed;
   }
 
@@ -355,6 +395,216 @@ std::vector<MaterialSource> withBodies(std::vector<MaterialSource> materials,
                                        const std::vector<std::uint8_t>& bodies) {
   for (const std::uint8_t of : bodies) materials.push_back(MaterialSource(materials.at(of)));
   return materials;
+}
+
+namespace {
+
+// Bodies whose numbers follow the materials are no thin walls.
+bool holdsMedium(const Model& model, const Surface& surface) {
+  if (surface.material == 0) return false;
+  const std::size_t index = surface.material - 1u;
+  return index >= model.materials.size() || !std::holds_alternative<ThinWallMaterial>(model.materials[index]);
+}
+
+// A vertex of a triangle: its place, and one of the model's vertices there.
+struct Corner {
+  std::uint32_t place, vertex;
+};
+
+// A directed edge that no triangle of its object runs through in the other direction.
+struct LooseEdge {
+  Corner from, to;
+  std::uint32_t surface;
+};
+
+struct ObjectEdges {
+  std::string surface;
+  std::vector<std::vector<LooseEdge>> loops;
+  std::size_t loose = 0;  // edges on no loop
+};
+
+// Follows loose edges from one to the next until they come back.
+void findLoops(std::vector<LooseEdge> edges, ObjectEdges& result) {
+  std::multimap<std::uint32_t, LooseEdge> next;
+  for (const LooseEdge& edge : edges) next.emplace(edge.from.place, edge);
+  while (!next.empty()) {
+    std::vector<LooseEdge> chain = {next.begin()->second};
+    next.erase(next.begin());
+    std::map<std::uint32_t, std::size_t> seen = {{chain[0].from.place, 0}};
+    for (;;) {
+      const std::uint32_t end = chain.back().to.place;
+      if (const auto again = seen.find(end); again != seen.end()) {
+        result.loops.emplace_back(chain.begin() + static_cast<std::ptrdiff_t>(again->second), chain.end());
+        for (std::size_t i = 0; i < again->second; ++i) next.emplace(chain[i].from.place, chain[i]);
+        break;
+      }
+      const auto follow = next.find(end);
+      if (follow == next.end()) {
+        result.loose += chain.size();
+        break;
+      }
+      seen[end] = chain.size();
+      chain.push_back(follow->second);
+      next.erase(follow);
+    }
+  }
+}
+
+std::map<std::uint32_t, ObjectEdges> looseEdges(const Model& model) {
+  const std::vector<std::uint32_t> places = placesOf(model);
+  std::map<std::uint32_t, std::vector<const Part*>> objects;
+  for (const Part& part : model.parts) objects[part.object].push_back(&part);
+  std::map<std::uint32_t, ObjectEdges> result;
+  for (const auto& [object, parts] : objects) {
+    const auto translucent = std::find_if(parts.begin(), parts.end(), [&](const Part* p) {
+      return holdsMedium(model, model.surfaces[p->surface]);
+    });
+    if (translucent == parts.end()) continue;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<LooseEdge>> edges;
+    for (const Part* part : parts)
+      for (std::uint32_t i = 0; i + 2 < part->indexCount; i += 3) {
+        Corner corners[3];
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = model.indices[part->firstIndex + i + k];
+          corners[k] = {places[vertex], vertex};
+        }
+        if (corners[0].place == corners[1].place || corners[1].place == corners[2].place ||
+            corners[2].place == corners[0].place)
+          continue;  // no area
+        for (int k = 0; k < 3; ++k) {
+          const Corner &a = corners[k], &b = corners[(k + 1) % 3];
+          if (const auto opposite = edges.find({b.place, a.place}); opposite != edges.end()) {
+            opposite->second.pop_back();
+            if (opposite->second.empty()) edges.erase(opposite);
+          } else {
+            edges[{a.place, b.place}].push_back({a, b, part->surface});
+          }
+        }
+      }
+    std::vector<LooseEdge> loose;
+    for (const auto& [key, same] : edges) loose.insert(loose.end(), same.begin(), same.end());
+    if (loose.empty()) continue;
+    ObjectEdges& open = result[object];
+    open.surface = model.surfaces[(*translucent)->surface].name;
+    findLoops(std::move(loose), open);
+  }
+  return result;
+}
+
+// Triangles from the loop's center to its edges, turned so that each edge is run through backwards.
+void fill(Model& model, std::uint32_t object, const std::vector<LooseEdge>& loop) {
+  Vertex center = model.vertices[loop[0].from.vertex];
+  glm::dvec3 middle(0), normal(0);
+  for (const LooseEdge& edge : loop) middle += positionOf(model.vertices[edge.from.vertex]);
+  middle /= static_cast<double>(loop.size());
+  for (const LooseEdge& edge : loop)
+    normal += glm::cross(positionOf(model.vertices[edge.to.vertex]) - middle,
+                         positionOf(model.vertices[edge.from.vertex]) - middle);
+  const double length = glm::length(normal);
+  normal = length > 0 ? normal / length : glm::dvec3(0, 0, 1);
+  for (int i = 0; i < 3; ++i) {
+    center.position[static_cast<std::size_t>(i)] = static_cast<float>(middle[i]);
+    center.normal[static_cast<std::size_t>(i)] = static_cast<float>(normal[i]);
+  }
+  const auto add = [&](Vertex vertex) {
+    vertex.normal = center.normal;
+    model.vertices.push_back(vertex);
+    return static_cast<std::uint32_t>(model.vertices.size() - 1);
+  };
+  const std::uint32_t hub = add(center);
+  Part part;
+  part.firstIndex = static_cast<std::uint32_t>(model.indices.size());
+  part.surface = loop[0].surface;
+  part.object = object;
+  for (const LooseEdge& edge : loop) {
+    const std::uint32_t to = add(model.vertices[edge.to.vertex]),
+                        from = add(model.vertices[edge.from.vertex]);
+    model.indices.insert(model.indices.end(), {to, from, hub});
+  }
+  part.indexCount = static_cast<std::uint32_t>(model.indices.size()) - part.firstIndex;
+  model.parts.push_back(part);
+}
+
+}  // namespace
+
+std::vector<OpenObject> openObjects(const Model& model) {
+  std::vector<OpenObject> result;
+  for (const auto& [object, edges] : looseEdges(model))
+    result.push_back({object, edges.surface, edges.loops.size(), edges.loose});
+  return result;
+}
+
+std::size_t fillHoles(Model& model) {
+  std::size_t filled = 0;
+  for (const auto& [object, edges] : looseEdges(model))
+    for (const std::vector<LooseEdge>& loop : edges.loops) {
+      fill(model, object, loop);
+      ++filled;
+    }
+  return filled;
+}
+
+std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point) {
+  struct Body {
+    double angle = 0;
+    std::optional<std::string> surface;
+  };
+  std::map<std::uint32_t, Body> bodies;
+  for (const Part& part : model.parts) {
+    Body& body = bodies[part.object];
+    const Surface& surface = model.surfaces[part.surface];
+    if (surface.material != 0 && !body.surface) body.surface = surface.name;
+    body.angle += solidAngle(model, part, toGlm(point));
+  }
+  for (const auto& [object, body] : bodies) {
+    if (body.surface && body.angle > kEnclosed) return body.surface;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> opaqueInside(const Model& model) {
+  struct Shell {
+    Box box;
+    std::vector<const Part*> parts;
+  };
+  std::map<std::uint32_t, Shell> shells;
+  for (const Part& part : model.parts) {
+    if (model.surfaces[part.surface].material == 0) continue;
+    Shell& shell = shells[part.object];
+    shell.parts.push_back(&part);
+    for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; ++i)
+      shell.box.add(cornerOf(model, i));
+  }
+  std::set<std::string> sentences;
+  for (const Part& part : model.parts) {
+    const Surface& opaque = model.surfaces[part.surface];
+    if (opaque.material != 0 || part.indexCount == 0) continue;
+    const glm::dvec3 from = cornerOf(model, part.firstIndex);
+    for (const auto& [object, shell] : shells) {
+      if (!shell.box.contains({from, from})) continue;
+      double angle = 0;
+      for (const Part* around : shell.parts) angle += solidAngle(model, *around, from);
+      if (angle > kEnclosed)
+        sentences.insert(
+            model.name + ": opaque \"" + opaque.name + "\" lies inside \"" +
+            model.surfaces[shell.parts.front()->surface].name +
+            "\": what is narrower than 4 times the body's thickness there blocks too little light in a "
+            "replay, up to 14 % of what comes through without it; `pellucid truth` has the right light");
+    }
+  }
+  return {sentences.begin(), sentences.end()};
+}
+
+void refuseEnclosedLights(const Model& model) {
+  for (std::size_t i = 0; i < model.lights.size(); ++i) {
+    const Light& light = model.lights[i];
+    if (light.type == PELLUCID_LIGHT_DIRECTIONAL) continue;
+    if (const auto surface = enclosingBody(model, light.position))
+      throw InputError(model.name, "lights[" + std::to_string(i) + "].position",
+                       "lies inside the translucent body \"" + *surface +
+                           "\": shadow maps hold the faces where light enters, and this light enters none; "
+                           "move it outside, or give the body a hollow around it");
+  }
 }
 
 }  // namespace pellucid::harness

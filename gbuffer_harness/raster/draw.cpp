@@ -1,13 +1,18 @@
 #include "raster/draw.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
+#include <cstring>
+#include <glm/glm.hpp>
 #include <glm/gtc/packing.hpp>
 #include <map>
 #include <utility>
 
 #include "common/error.h"
 #include "common/frame_image.h"
+#include "common/srgb.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
 #include "kRasterDepth.h"
@@ -22,29 +27,47 @@ namespace pellucid::harness {
 
 namespace {
 
+Image linearImage(const Texture& texture) {
+  std::array<float, 256> linear;
+  for (std::size_t i = 0; i < linear.size(); ++i)
+    linear[i] = texture.isNormalMap ? static_cast<float>(i) / 127.5f - 1
+                                    : static_cast<float>(linearOf(static_cast<std::uint8_t>(i)));
+  Image image(texture.width, texture.height, 4);
+  for (std::size_t i = 0; i < image.data.size(); ++i)
+    image.data[i] = i % 4 == 3 ? static_cast<float>(texture.rgba[i]) / 255.0f : linear[texture.rgba[i]];
+  return image;
+}
+
+VkSamplerAddressMode addressMode(TextureWrap wrap) {
+  return wrap == TextureWrap::Repeat  ? VK_SAMPLER_ADDRESS_MODE_REPEAT
+         : wrap == TextureWrap::Clamp ? VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE
+                                      : VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
+}
+
+template <class T>
+VkDeviceSize byteCount(const std::vector<T>& values) {
+  return static_cast<VkDeviceSize>(values.size() * sizeof(T));
+}
+
 // Push constants of shaders/draw.glsl.
+struct DrawConstants {
+  glm::mat4 clipFromWorld;
+  glm::vec4 planar;
+  glm::vec4 baseColor;
+  glm::vec4 addedColor;
+  glm::uvec4 ids;
+};
+static_assert(sizeof(DrawConstants) == 128, "what every device has for push constants");
 constexpr std::uint32_t kOwnBindings = 5, kBehindFront = 1, kBehindCaster = 2, kHasColor = 4, kHasLobes = 8,
                         kLobesApart = 256, kIsOffset = 2;
 constexpr VkShaderStageFlags kStages =  // that read DrawConstants
     VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
-Spirv fragmentSpirv(FragmentShader shader) {
-  switch (shader) {
-    case FragmentShader::Surface:
-      return {kRasterSurface, sizeof kRasterSurface};
-    case FragmentShader::Depth:
-      return {kRasterDepth, sizeof kRasterDepth};
-    case FragmentShader::Caster:
-      return {kRasterCaster, sizeof kRasterCaster};
-    case FragmentShader::Count:
-      return {kRasterCount, sizeof kRasterCount};
-    case FragmentShader::Reflected:
-      return {kRasterReflected, sizeof kRasterReflected};
-    case FragmentShader::Transmit:
-      return {kRasterTransmit, sizeof kRasterTransmit};
-  }
-  throw DeviceError("no such fragment shader");
-}
+// By FragmentShader.
+const Spirv kFragmentShaders[] = {
+    {kRasterSurface, sizeof kRasterSurface}, {kRasterReflected, sizeof kRasterReflected},
+    {kRasterDepth, sizeof kRasterDepth},     {kRasterCaster, sizeof kRasterCaster},
+    {kRasterCount, sizeof kRasterCount},     {kRasterTransmit, sizeof kRasterTransmit}};
 
 glm::vec4 vec4(const std::array<double, 3>& rgb, double w) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]),
@@ -102,6 +125,56 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
 
 }  // namespace
 
+UploadedMesh::UploadedMesh(Device& device, const Model& model)
+    : vertices_(device, byteCount(model.vertices), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
+      indices_(device, byteCount(model.indices), VK_BUFFER_USAGE_INDEX_BUFFER_BIT) {
+  if (!device.canDraw()) throw DeviceError(device.description() + " computes but has no queue that draws");
+  std::memcpy(vertices_.mapped(), model.vertices.data(), static_cast<std::size_t>(vertices_.size()));
+  std::memcpy(indices_.mapped(), model.indices.data(), static_cast<std::size_t>(indices_.size()));
+  for (const Texture& texture : model.textures) add(device, texture, VK_FILTER_LINEAR);
+  // Its sampler also serves texelFetch from formats that need not filter.
+  add(device, {1, 1, {255, 255, 255, 255}}, VK_FILTER_NEAREST);
+}
+
+VkPipelineVertexInputStateCreateInfo UploadedMesh::vertexInput() {
+  static constexpr VkVertexInputBindingDescription binding{0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  static constexpr VkVertexInputAttributeDescription attributes[] = {
+      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+      {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, uv)},
+      {3, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color)},
+      {4, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, mark)},
+      {5, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, normalUv)},
+      {6, 0, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(Vertex, tangent)},
+      {7, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(Vertex, lobeUv)},
+      {8, 0, VK_FORMAT_R32_SFLOAT, offsetof(Vertex, alpha)}};
+  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  input.vertexBindingDescriptionCount = 1;
+  input.pVertexBindingDescriptions = &binding;
+  input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
+  input.pVertexAttributeDescriptions = attributes;
+  return input;
+}
+
+void UploadedMesh::bind(VkCommandBuffer commandBuffer) const {
+  const VkDeviceSize offset = 0;
+  const VkBuffer vertexBuffer = vertices_.handle();
+  vkCmdBindVertexBuffers(commandBuffer, 0, 1, &vertexBuffer, &offset);
+  vkCmdBindIndexBuffer(commandBuffer, indices_.handle(), 0, VK_INDEX_TYPE_UINT32);
+}
+
+void UploadedMesh::add(Device& device, const Texture& texture, VkFilter filter) {
+  images_.push_back(
+      std::make_unique<GpuImage>(device, texture.width, texture.height, VK_FORMAT_R16G16B16A16_SFLOAT));
+  images_.back()->upload(linearImage(texture));
+  VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+  info.magFilter = info.minFilter = filter;
+  info.addressModeU = addressMode(texture.wrapU);
+  info.addressModeV = addressMode(texture.wrapV);
+  samplers_.push_back(std::make_unique<Owned<VkSampler, vkDestroySampler>>(device));
+  check(vkCreateSampler(device.handle(), &info, nullptr, samplers_.back()->receive()), "vkCreateSampler");
+}
+
 class UploadedModel::Pipelines {
 public:
   explicit Pipelines(Device& device)
@@ -130,7 +203,7 @@ private:
     drawn.blend.srcColorBlendFactor = drawn.blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
     drawn.blend.srcAlphaBlendFactor = drawn.blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
     createPipeline(device_, target.pass(), layout_, {kRasterMesh, sizeof kRasterMesh},
-                   fragmentSpirv(state.shader), drawn, pipeline);
+                   kFragmentShaders[static_cast<std::size_t>(state.shader)], drawn, pipeline);
   }
 
   Device& device_;

@@ -1,21 +1,42 @@
-// The Vulkan objects of drawing a model into images: pipelines and the uploaded triangles.
+// The Vulkan objects of drawing a model into images: the triangles and textures in device memory, and
+// pipelines.
 #pragma once
 
-#include <glm/mat4x4.hpp>
-#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "common/device.h"
 #include "common/gpu_image.h"
+#include "common/owned.h"
 #include "raster/model.h"
-#include "raster/pipeline.h"
 #include "raster/render_target.h"
-#include "raster/uploaded_mesh.h"
 
 namespace pellucid::harness {
+
+// Textures are linear colors and vectors in halves, without mip levels.
+class UploadedMesh {
+public:
+  // Throws DeviceError where the device cannot draw or a texture does not fit it. The model is not needed
+  // afterwards.
+  UploadedMesh(Device& device, const Model& model);
+
+  // Pipelines read locations 0 to 8: the members of Vertex, in their order.
+  static VkPipelineVertexInputStateCreateInfo vertexInput();
+  void bind(VkCommandBuffer commandBuffer) const;  // vertices and indices
+
+  // Index into Model::textures, or white(), a white texel whose sampler needs no filter.
+  const GpuImage& image(std::size_t i) const { return *images_[i]; }
+  VkSampler sampler(std::size_t i) const { return *samplers_[i]; }
+  std::size_t white() const { return images_.size() - 1; }
+
+private:
+  void add(Device& device, const Texture& texture, VkFilter filter);
+
+  HostBuffer vertices_, indices_;
+  std::vector<std::unique_ptr<GpuImage>> images_;
+  std::vector<std::unique_ptr<Owned<VkSampler, vkDestroySampler>>> samplers_;
+};
 
 enum class FragmentShader { Surface, Reflected, Depth, Caster, Count, Transmit };
 
@@ -28,16 +49,6 @@ struct PipelineState {
 
   auto operator<=>(const PipelineState&) const = default;
 };
-
-// Push constants; shaders/draw.glsl.
-struct DrawConstants {
-  glm::mat4 clipFromWorld;
-  glm::vec4 planar;
-  glm::vec4 baseColor;
-  glm::vec4 addedColor;
-  glm::uvec4 ids;
-};
-static_assert(sizeof(DrawConstants) == 128, "what every device has for push constants");
 
 // How a model is seen.
 struct DrawView {

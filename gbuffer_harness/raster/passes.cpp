@@ -1,14 +1,25 @@
 #include "raster/passes.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "kRasterDepths.h"
 #include "kRasterHalf.h"
+#include "kRasterIrradiance.h"
 #include "kRasterReflect.h"
+#include "scene/vector.h"
+#include "shared/pellucid_shared.h"
 
 namespace pellucid::harness {
 
 namespace {
+
+static_assert(PELLUCID_SHADER_LIGHT_DIRECTIONAL == PELLUCID_LIGHT_DIRECTIONAL);
+static_assert(PELLUCID_SHADER_LIGHT_SPOT == PELLUCID_LIGHT_SPOT);
+
+constexpr std::uint32_t kShadowMaps = 6;  // SHADOW_MAPS
 
 constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                            kStored = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
@@ -20,7 +31,127 @@ struct DepthPush {
   std::uint32_t isDevice, greaterIsNearer, nearestBack;
 };
 
+// The bindings of shaders/irradiance.comp.
+constexpr PixelPass::Binding kBindings[] = {
+    {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {kSampled}, {kSampled, kShadowMaps}, {kStored}, {kSampled}};
+constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBinding = 4;
+
+// The uniform block.
+struct Constants {
+  struct ShadowView {
+    glm::mat4 clipFromView;
+    glm::vec4 planar, texel;
+  };
+  glm::mat4 viewFromWorld;
+  ShadowView shadowViews[kShadowMaps];
+  glm::vec4 shadow, eye;
+  glm::ivec4 lookup;
+  shared::LightConstants light;
+};
+
+shared::LightConstants lightConstants(const Light& light, const glm::dmat4& viewFromWorld) {
+  shared::LightConstants constants{};
+  constants.meta.x = light.type;
+  constants.radiance = glm::vec4(toGlm(light.color) * light.intensity, 0);
+  constants.position = glm::vec4(viewFromWorld * glm::dvec4(toGlm(light.position), 1));
+  constants.position.w = static_cast<float>(light.range > 0 ? 1 / light.range : 0);
+  constants.direction = glm::vec4(glm::normalize(glm::dmat3(viewFromWorld) * toGlm(light.direction)), 0);
+  // KHR_lights_punctual, "Inner and Outer Cone Angles"; 0.001 is its own guard.
+  const double outer = std::cos(light.outerConeAngle);
+  const double scale = 1 / std::max(0.001, std::cos(light.innerConeAngle) - outer);
+  constants.cone = glm::vec4(scale, -outer * scale, 0, 0);
+  return constants;
+}
+
+void setShadows(Constants& constants, const Shadows& shadows, const glm::dmat4& worldFromView) {
+  for (std::size_t i = 0; i < shadows.images.size(); ++i) {
+    const ShadowImage& image = shadows.images[i];
+    const glm::dmat4 shadowView = toGlm(image.viewFromWorld) * worldFromView;
+    // The view is 2 / clipFromView[0] wide, at planar distance 1 if it is a perspective.
+    constants.shadowViews[i] = {glm::mat4(toGlm(image.clipFromView) * shadowView),
+                                -glm::vec4(glm::transpose(shadowView)[2]),
+                                glm::vec4(static_cast<float>(2 / image.clipFromView[0] / image.size))};
+  }
+  if (shadows.images.empty()) return;
+  const ShadowImage& first = shadows.images.front();
+  constants.shadow = glm::vec4(first.size, first.perspective, 0, 0);
+  constants.lookup.x = static_cast<int>(shadows.images.size());
+  constants.lookup.y = first.perspective && shadows.images.size() > 1;
+  constants.lookup.z = shadows.filter;
+}
+
+Constants constantsOf(const LitSurfaces& surfaces, const Light& light, const Shadows& shadows) {
+  const Matrix& clipFromView = surfaces.view.clipFromView;
+  const glm::dmat4 viewFromWorld = toGlm(surfaces.view.viewFromWorld);
+  Constants constants{};
+  constants.viewFromWorld = glm::mat4(viewFromWorld);
+  constants.light = lightConstants(light, viewFromWorld);
+  const bool perspective = clipFromView[15] == 0;
+  constants.eye =
+      glm::vec4(1 / clipFromView[0], 1 / clipFromView[5], perspective ? -clipFromView[8] : clipFromView[12],
+                perspective ? -clipFromView[9] : clipFromView[13]);
+  constants.lookup.w = perspective;
+  setShadows(constants, shadows, glm::inverse(viewFromWorld));
+  return constants;
+}
+
+constexpr VkSpecializationMapEntry kMapsEntry{0, 0, sizeof(std::uint32_t)};
+constexpr std::uint32_t kOneMap = 1, kAllMaps = kShadowMaps;
+
+PixelPass passOf(Device& device, const std::uint32_t& maps) {
+  return {device,
+          {kRasterIrradiance, sizeof kRasterIrradiance},
+          {std::begin(kBindings), std::end(kBindings)},
+          0,
+          {1, &kMapsEntry, sizeof maps, &maps}};
+}
+
 }  // namespace
+
+IrradiancePass::IrradiancePass(Device& device)
+    : one_(passOf(device, kOneMap)),
+      six_(passOf(device, kAllMaps)),
+      constants_(device, sizeof(Constants),
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+
+void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
+                            const Shadows& shadows) const {
+  const Constants constants = constantsOf(surfaces, light, shadows);
+  // The light before is done with the buffer: PixelPass ends with a barrier.
+  vkCmdUpdateBuffer(commands, constants_.handle(), 0, sizeof constants, &constants);
+  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
+          {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
+
+  const std::vector<ShadowImage>& images = shadows.images;
+  const PixelPass& pass = images.size() <= kOneMap ? one_ : six_;
+  const auto useInfo = [&](const PellucidImage& image) {
+    return VkDescriptorImageInfo{pass.sampler(), image.view, image.layout};
+  };
+  const auto imageInfo = [&](const GpuImage& image) { return useInfo(image.use()); };
+  const VkDescriptorBufferInfo bufferInfo{constants_.handle(), 0, VK_WHOLE_SIZE};
+  const VkDescriptorImageInfo surface = imageInfo(surfaces.normalPlanar),
+                              triangles = imageInfo(surfaces.depthNormal),
+                              target = imageInfo(surfaces.irradiance);
+  // A descriptor that is not read must be valid all the same.
+  VkDescriptorImageInfo maps[kShadowMaps];
+  for (std::size_t i = 0; i < kShadowMaps; ++i)
+    maps[i] = useInfo(i >= images.size()   ? surfaces.normalPlanar.use()
+                      : shadows.filter > 0 ? images[i].depths
+                                           : images[i].planar);
+  VkWriteDescriptorSet writes[std::size(kBindings)];
+  for (std::uint32_t i = 0; i < std::size(writes); ++i) {
+    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    writes[i].dstBinding = i;
+    writes[i].descriptorCount = kBindings[i].count;
+    writes[i].descriptorType = kBindings[i].type;
+  }
+  writes[0].pBufferInfo = &bufferInfo;
+  writes[1].pImageInfo = &surface;
+  writes[kShadowBinding].pImageInfo = maps;
+  writes[kIrradianceBinding].pImageInfo = &target;
+  writes[kTrianglesBinding].pImageInfo = &triangles;
+  pass.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
+}
 
 DrawPasses::DrawPasses(Device& device)
     : targets(device),

@@ -4,7 +4,7 @@
 
 #include "common/error.h"
 #include "raster/framing.h"
-#include "raster/front.h"
+#include "raster/passes.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"
 

@@ -6,7 +6,7 @@
 
 #include "raster/draw.h"
 #include "raster/framing.h"
-#include "raster/irradiance.h"
+#include "raster/passes.h"
 #include "raster/raster.h"
 
 namespace pellucid::harness {

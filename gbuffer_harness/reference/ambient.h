@@ -18,8 +18,8 @@ public:
           const std::vector<PellucidMaterial>& materials);
 
   // Exitance besides what the irradiance image makes: T(h) of what arrives at the hidden face, less what the
-  // visible face does not return of its own. 0 without a back depth, and without an environment and hidden irradiance. `material`: from 0.
-  // `bodies`: the gather says what the visible face returns.
+  // visible face does not return of its own. 0 without a back depth, and without an environment and hidden
+  // irradiance. `material`: from 0. `bodies`: the gather says what the visible face returns.
   glm::dvec3 at(const Surface& surface, std::size_t material, bool bodies) const;
 
   // Irradiance of a face with a unit normal in world space.

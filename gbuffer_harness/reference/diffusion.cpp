@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/error.h"
-#include "reference/footprint_integral.h"
+#include "reference/profile.h"
 
 namespace pellucid::harness::reference {
 namespace {

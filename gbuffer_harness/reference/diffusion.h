@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "reference/material_profile.h"
+#include "reference/profile.h"
 #include "reference/surface.h"
 
 namespace pellucid::harness::reference {

@@ -10,7 +10,7 @@
 #include "capture/capture.h"
 #include "common/error.h"
 #include "reference/camera.h"
-#include "reference/drawn_depth.h"
+#include "reference/light.h"
 
 namespace pellucid::harness::reference {
 namespace {

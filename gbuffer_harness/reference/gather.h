@@ -78,8 +78,8 @@ private:
   Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.
   double inside(const Texel& texel, const Exit& exit, const Place& place) const;
-  // 1 where the straight path from the exit to a texel lies in the body, at that part of the path; 0 where a map's exit lies
-  // before, with air or an opaque body behind it. `to`: from the texel to the exit.
+  // 1 where the straight path from the exit to a texel lies in the body, at that part of the path; 0 where a
+  // map's exit lies before, with air or an opaque body behind it. `to`: from the texel to the exit.
   double pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const;
   // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
   // the image. 0 where it does not go on.

@@ -2,13 +2,23 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 
 #include "capture/capture.h"
-#include "reference/drawn_depth.h"
 
 namespace pellucid::harness::reference {
+
+// The depth of the surface that was drawn into a shadow map, without the biases that the drawing added. In
+// units of the stored depth.
+struct DrawnDepth {
+  double depth;
+  double uncertain;  // how far it may be off
+};
+
+// Depth of a texel that stores a surface. `holds`: true for a stored depth of a surface.
+DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bool(float)>& holds);
 
 struct Arrival {
   glm::dvec3 toLight;     // unit, from the point

@@ -1,4 +1,5 @@
-// Radial diffusion profiles R(r), integral 1 over the plane, in double precision. Lengths in mm.
+// Radial diffusion profiles R(r) in double precision: formulas, those of compiled materials, and the energy
+// that one sends from a pixel. Lengths in mm, integrals over the plane 1.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +8,11 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <numbers>
+#include <optional>
 #include <variant>
 #include <vector>
+
+#include "pellucid/pellucid.h"
 
 namespace pellucid::harness::reference {
 
@@ -94,5 +98,40 @@ private:
   double radius_, cellsPerRoot_;
   std::vector<Cubic> ring_, cumulative_;
 };
+
+// Where the R(r) of a compiled material comes from.
+enum class ProfileSource {
+  Material,  // Burley in channels with burleyDistance > 0, else the Gaussians
+  Burley,    // burleyDistance; 0: the channel does not diffuse
+  Gaussians,
+  Table  // ProfileValues
+};
+
+// R(r) measured at `radius` (mm), RGB per radius; any scale.
+struct ProfileValues {
+  std::vector<double> radius;
+  std::vector<std::array<double, 3>> value;
+};
+
+// One channel's profile; nothing if the channel does not diffuse. `table` is read for
+// ProfileSource::Table only. Throws InputError naming the field for values no profile can have.
+std::optional<Profile> channelProfile(const PellucidMaterial& material, int channel, ProfileSource source,
+                                      const ProfileValues& table);
+
+// Parallelogram { center + a x + b y : -1 <= a, b <= 1 }; center relative to the receiving point.
+struct Parallelogram {
+  glm::dvec3 center, x, y;
+};
+
+// Integral of R(|y|) over the parallelogram, exact for any profile and any distance, R's infinity at
+// r = 0 included. In polar coordinates around the foot of the perpendicular (height t), the radial
+// integral is the cumulative energy, which leaves one integral over the angle along each edge:
+//   1/(2 pi) sum_edges int cumulative(sqrt(rho^2 + t^2)) - cumulative(t) dtheta.
+// Measured error, table included: below 1e-7 of the whole profile.
+ProfileTable::Lanes integratedEnergy(const ProfileTable& profile, const Parallelogram& p);
+
+// The same with 2x2 Gauss-Legendre points: relative error falls with the fourth power of
+// size / distance.
+ProfileTable::Lanes sampledEnergy(const ProfileTable& profile, const Parallelogram& p);
 
 }  // namespace pellucid::harness::reference

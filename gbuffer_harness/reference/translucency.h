@@ -13,6 +13,10 @@
 
 namespace pellucid::harness::reference {
 
+// Whelan 2009, 4.6.2: the minimum dot of a light, from a table by where the light is around the object;
+// settings.minimumDot for models without a table. Throws InputError when the table does not fit the model.
+double minimumDot(const TranslucencySettings& settings, const Light& light);
+
 // What one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
 struct Transmission {
   std::optional<double> cameraThickness;  // ray chord between front and back depth

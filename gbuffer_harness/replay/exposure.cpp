@@ -8,6 +8,9 @@
 #include <optional>
 #include <vector>
 
+#include "common/far_origin.h"
+#include "scene/vector.h"
+
 namespace pellucid::harness {
 
 namespace {
@@ -16,12 +19,6 @@ namespace {
 // it.
 constexpr double kDimmest = 1.0 / 64, kBrightest = 4096;
 constexpr float kLeast = 1e-9F, kMost = 1e9F;  // of the module's preExposure
-
-glm::dmat4 toGlm(const Matrix& m) {
-  glm::dmat4 result;
-  for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-  return result;
-}
 
 // In the world, of the surface that the pixel shows; none where the depth says that there is no surface.
 std::optional<glm::dvec3> surfaceAt(const Capture& capture, const glm::dmat4& viewFromClip,
@@ -66,8 +63,7 @@ double largestLight(const Capture& capture) {
       for (int c = 0; c < 3; ++c) raise(largest, static_cast<double>(light[c]));
       const auto point = surfaceAt(capture, viewFromClip, worldFromView, x, y);
       for (std::size_t i = 0; point && i < nearest.size(); ++i) {
-        const auto& p = capture.lights[i].position;
-        const glm::dvec3 toLight = glm::dvec3(p[0], p[1], p[2]) - *point;
+        const glm::dvec3 toLight = toGlm(capture.lights[i].position) - *point;
         nearest[i] = std::min(nearest[i], glm::dot(toLight, toLight));
       }
     }
@@ -86,6 +82,34 @@ float preExposureFor(const Capture& capture) {
   const double largest = largestLight(capture);
   if (largest == 0 || (largest >= kDimmest && largest <= kBrightest)) return 1;
   return std::clamp(static_cast<float>(std::exp2(-std::floor(std::log2(largest)))), kLeast, kMost);
+}
+
+namespace {
+
+// The distance that is seen, in scene units; 0: the matrix does not say.
+double seenDistance(const Matrix& clip) {
+  if (clip[15] != 0) return 2 / std::abs(clip[5]);
+  // Depths 0 and 1, of which one is the near plane.
+  const double depths[] = {clip[14] / clip[10], (clip[14] - clip[15]) / (clip[10] - clip[11])};
+  double nearest = INFINITY;
+  for (const double depth : depths)
+    if (depth > 0) nearest = std::min(nearest, depth);
+  return std::isfinite(nearest) ? kNearPlanes * nearest : 0;
+}
+
+}  // namespace
+
+std::array<double, 3> worldOrigin(const Capture& capture) {
+  const Matrix& view = capture.viewFromWorld;
+  std::array<double, 3> eye{};  // the rotation's transpose is its inverse
+  double length = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) eye[i] -= view[4 * i + k] * view[12 + k];
+    length = std::max(length, std::abs(eye[i]));
+  }
+  const double seen = seenDistance(capture.clipFromView);
+  if (!(seen > 0) || !std::isfinite(length) || !(length > kFarthest * seen)) return {0, 0, 0};
+  return originNear(eye, seen);
 }
 
 }  // namespace pellucid::harness

@@ -1,5 +1,7 @@
-// How brightly halves hold a capture's light.
+// How halves hold the light of a capture, and floats its world.
 #pragma once
+
+#include <array>
 
 #include "capture/capture.h"
 
@@ -13,5 +15,9 @@ double largestLight(const Capture& capture);
 // A power of 2 as PellucidFrame::preExposure: 1 where halves hold the capture's light as it is, else what
 // brings the largest light to 1 .. 2. Physical units, such as a sun of 1e5 lux, need one below 1.
 float preExposureFor(const Capture& capture);
+
+// Near the camera, where it stands so far from the world's origin that floats would move shadow maps against
+// what it sees; else 0, 0, 0.
+std::array<double, 3> worldOrigin(const Capture& capture);
 
 }  // namespace pellucid::harness

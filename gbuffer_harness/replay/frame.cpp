@@ -9,7 +9,7 @@
 #include "common/error.h"
 #include "common/far_origin.h"
 #include "pellucid/pellucid_material.h"
-#include "replay/world_origin.h"
+#include "replay/exposure.h"
 
 namespace pellucid::harness {
 namespace {

@@ -11,7 +11,7 @@
 #include "common/device.h"
 #include "common/error.h"
 #include "pellucid/pellucid.h"
-#include "raster/draw_pass.h"
+#include "raster/render_target.h"
 
 namespace pellucid::sample {
 

@@ -7,9 +7,8 @@
 #include <tuple>
 
 #include "common/pool.h"
-#include "raster/depth_buffer.h"
-#include "raster/pipeline.h"
-#include "raster/uploaded_mesh.h"
+#include "raster/render_target.h"
+#include "raster/draw.h"
 #include "sample/pellucid_pass.h"
 #include "sample/scene.h"
 #include "sample/submissions.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "capture/material.h"
-#include "raster/field_mesh.h"
+#include "raster/mesh.h"
 #include "scene/environment.h"
 #include "scene/vector.h"
 

@@ -41,25 +41,10 @@ double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
 // Dot product with one of eight directions of the plane.
 double gradient(std::uint8_t hash, double x, double y) {
+  constexpr double kDirections[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
   constexpr double kDiagonal = 0.7071067811865476;
-  switch (hash & 7) {
-    case 0:
-      return x;
-    case 1:
-      return -x;
-    case 2:
-      return y;
-    case 3:
-      return -y;
-    case 4:
-      return kDiagonal * (x + y);
-    case 5:
-      return kDiagonal * (x - y);
-    case 6:
-      return kDiagonal * (y - x);
-    default:
-      return -kDiagonal * (x + y);
-  }
+  const auto& [dx, dy] = kDirections[hash & 7];
+  return (hash & 4 ? kDiagonal : 1) * (dx * x + dy * y);
 }
 
 Noise::Noise(unsigned seed) {
@@ -99,23 +84,13 @@ double Noise::fractal(double x, double y, int octaves) const {
   return sum;
 }
 
-const SceneOption kExtent = {"extent", 40, 1e-3, 1e5, "visible width, mm"};
-
-LightPlacement lightAt(const glm::dvec3& toward, double irradiance, double extent) {
-  LightPlacement light{glm::dvec3(0), toward, irradiance};
-  light.distance = 5 * extent;
-  light.coneRadius = extent;
-  return light;
-}
-
 SceneModel buildSpheres(const SceneParameters& parameters, const OptionValues& options) {
   const double extent = options["extent"];
   SceneModel model;
-  model.camera =
-      placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
+  model.camera = frontCamera(parameters, extent);
   model.radius = 1.2 * extent;
-  model.lights = {placeLight(parameters, lightAt({0.5, 0.6, -1}, 1, extent)),
-                  placeLight(parameters, lightAt({-1, 0.5, 0.4}, 0.3, extent))};
+  model.lights = {lightAt(parameters, {0.5, 0.6, -1}, 1, extent),
+                  lightAt(parameters, {-1, 0.5, 0.4}, 0.3, extent)};
 
   struct Ball {
     glm::dvec3 center;
@@ -167,7 +142,7 @@ SceneModel buildBlades(const SceneParameters& parameters, const OptionValues& op
   model.camera = placeCamera(
       parameters, {{0, 0.5 * extent, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
   model.radius = 1.2 * extent;
-  model.lights = {placeLight(parameters, lightAt({0.3, 0.6, -1}, 1, extent))};
+  model.lights = {lightAt(parameters, {0.3, 0.6, -1}, 1, extent)};
   Random random(parameters.seed);
   for (int i = 0; i < static_cast<int>(options["count"]); ++i) {
     const double x = extent * random.between(-0.5, 0.5);
@@ -215,14 +190,13 @@ private:
 SceneModel buildNoise(const SceneParameters& parameters, const OptionValues& options) {
   const double extent = options["extent"];
   SceneModel model;
-  model.camera =
-      placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
+  model.camera = frontCamera(parameters, extent);
   model.radius = extent;
   model.objects.emplace_back().solid =
       std::make_unique<NoisySheet>(parameters.seed, 0.45 * extent, options["thickness"], options["amplitude"],
                                    options["scale"], static_cast<int>(options["octaves"]));
-  model.lights = {placeLight(parameters, lightAt({0.2, 0.3, -1}, 1, extent)),
-                  placeLight(parameters, lightAt({-1, 0.4, 0.3}, 0.5, extent))};
+  model.lights = {lightAt(parameters, {0.2, 0.3, -1}, 1, extent),
+                  lightAt(parameters, {-1, 0.4, 0.3}, 0.5, extent)};
   return model;
 }
 

@@ -278,9 +278,7 @@ SceneModel buildEar(const SceneParameters& parameters, const OptionValues& optio
   front.distance = 500;
   front.coneRadius = 90;
   model.lights = {placeLight(parameters, back), placeLight(parameters, front)};
-
-  // Diffuse reflectance of skin1 (Jensen et al. 2001, figure 5).
-  model.albedo = [](const glm::dvec3&) { return glm::dvec3(0.44, 0.22, 0.13); };
+  model.albedo = skinAlbedo;
   return model;
 }
 

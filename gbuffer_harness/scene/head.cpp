@@ -149,9 +149,7 @@ SceneModel buildHead(const SceneParameters& parameters, const OptionValues& opti
     for (int c = 0; c < 3; ++c) light.color[c] = 0.5 + 0.5 * std::cos(turn - 2 * std::numbers::pi * c / 3);
     model.lights.push_back(placeLight(parameters, light));
   }
-
-  // Diffuse reflectance of skin1 (Jensen et al. 2001, figure 5).
-  model.albedo = [](const glm::dvec3&) { return glm::dvec3(0.44, 0.22, 0.13); };
+  model.albedo = skinAlbedo;
   return model;
 }
 

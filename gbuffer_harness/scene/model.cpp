@@ -89,4 +89,15 @@ Light placeLight(const SceneParameters& parameters, const LightPlacement& placem
   return light;
 }
 
+Camera frontCamera(const SceneParameters& parameters, double extent) {
+  return placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
+}
+
+Light lightAt(const SceneParameters& parameters, const glm::dvec3& toward, double irradiance, double extent) {
+  LightPlacement light{glm::dvec3(0), toward, irradiance};
+  light.distance = 5 * extent;
+  light.coneRadius = extent;
+  return placeLight(parameters, light);
+}
+
 }  // namespace pellucid::harness

@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -104,5 +105,16 @@ struct LightPlacement {
   glm::dvec3 color = glm::dvec3(1);
 };
 Light placeLight(const SceneParameters& parameters, const LightPlacement& placement);
+
+inline const SceneOption kExtent = {"extent", 40, 1e-3, 1e5, "visible width, mm"};
+inline double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+// Of scenes around the origin that are so wide: the camera on the z axis, and lights as far away as they
+// need.
+Camera frontCamera(const SceneParameters& parameters, double extent);
+Light lightAt(const SceneParameters& parameters, const glm::dvec3& toward, double irradiance, double extent);
+
+// Diffuse reflectance of skin1 (Jensen et al. 2001, figure 5).
+inline glm::dvec3 skinAlbedo(const glm::dvec3&) { return {0.44, 0.22, 0.13}; }
 
 }  // namespace pellucid::harness

@@ -11,11 +11,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
 std::vector<SceneOption> withCommonOptions(std::vector<SceneOption> own) {
   const std::vector<SceneOption> common = {
-      {"extent", 40, 1e-3, 1e5, "visible width, mm"},
+      kExtent,
       {"tilt", 0, -85, 85, "rotation of the plane about the vertical axis, degrees"},
       {"thickness", 20, 1e-3, 1e3, "depth of the solid behind the plane, mm"},
       {"samples", 1, 1, 64, "irradiance averaged over samples^2 points of each pixel"}};

@@ -7,6 +7,10 @@
 
 namespace pellucid::harness {
 
+// Roots in [low, high], ascending, of c[0] + c[1] x + ... + c[n] x^n, to the precision of double
+// arithmetic. Roots of even multiplicity (a ray that only touches) may be left out.
+std::vector<double> realRoots(const std::vector<double>& c, double low, double high);
+
 struct Ray {
   glm::dvec3 origin, direction;  // unit direction
   glm::dvec3 at(double t) const { return origin + t * direction; }

@@ -1,7 +1,6 @@
 // Back-lit solids, most of them of known thickness.
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "scene/model.h"
 
@@ -14,9 +13,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of a shadow map around what it covers.
 constexpr double kMargin = 1.1;
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
-const SceneOption kExtent = {"extent", 40, 1e-3, 1e5, "visible width, mm"};
 const SceneOption kLightAngle = {"lightAngle", 20, -180, 180,
                                  "direction towards the light, degrees from straight behind"};
 const SceneOption kTilt = {"tilt", 0, -85, 85, "rotation about the vertical axis, degrees"};
@@ -41,16 +37,10 @@ glm::dmat3 turned(double degrees) {
 SceneModel backLit(const SceneParameters& parameters, const OptionValues& options) {
   const double extent = options["extent"];
   SceneModel model;
-  model.camera =
-      placeCamera(parameters, {{0, 0, 4 * extent}, {0, 0, 0}, extent, false, extent / 4, 12 * extent});
+  model.camera = frontCamera(parameters, extent);
   model.radius = extent;
   const double angle = radians(options["lightAngle"]);
-  model.lights.push_back(placeLight(parameters, {{0, 0, 0},
-                                                 {std::sin(angle), 0, -std::cos(angle)},
-                                                 1,
-                                                 PELLUCID_LIGHT_DIRECTIONAL,
-                                                 5 * extent,
-                                                 extent}));
+  model.lights = {lightAt(parameters, {std::sin(angle), 0, -std::cos(angle)}, 1, extent)};
   return model;
 }
 
@@ -176,10 +166,7 @@ SceneModel buildTwoMaterials(const SceneParameters& parameters, const OptionValu
     return static_cast<std::uint8_t>(p.x < 0 ? 1 : 2);
   };
   model.materials = {PresetMaterial{"skin1"}, PresetMaterial{"marble"}};
-  LightPlacement front{{0, 0, 0}, {1, 1, 1}, 1};
-  front.distance = 5 * extent;
-  front.coneRadius = extent;
-  model.lights.push_back(placeLight(parameters, front));
+  model.lights.push_back(lightAt(parameters, {1, 1, 1}, 1, extent));
   return model;
 }
 

@@ -5,7 +5,6 @@
 
 #include "common/device.h"
 #include "common/gpu_image.h"
-#include "raster/pipeline.h"
 #include "raster/render_target.h"
 #include "view/frames.h"
 #include "view/state.h"

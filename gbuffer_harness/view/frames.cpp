@@ -10,7 +10,7 @@
 #include "capture/material.h"
 #include "metrics/eye.h"
 #include "metrics/spots.h"
-#include "raster/drawn_frame.h"
+#include "raster/rasterizer.h"
 #include "replay/exposure.h"
 #include "replay/inputs.h"
 #include "shared/pellucid_shared.h"

@@ -12,7 +12,7 @@
 #include "common/translucency_settings.h"
 #include "pellucid/pellucid.h"
 #include "pellucid/pellucid_material.h"
-#include "reference/material_profile.h"
+#include "reference/profile.h"
 #include "reference/translucency.h"
 #include "view/panel.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "capture/manifest_material.h"
+#include "capture/manifest_parts.h"
 #include "common/error.h"
 #include "common/parse.h"
 #include "replay/settings.h"

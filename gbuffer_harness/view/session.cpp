@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "capture/json_field.h"
-#include "capture/manifest_material.h"
 #include "capture/manifest_parts.h"
 #include "common/error.h"
 

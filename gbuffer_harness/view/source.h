@@ -7,7 +7,7 @@
 
 #include "capture/capture.h"
 #include "common/device.h"
-#include "raster/drawn_frame.h"
+#include "raster/rasterizer.h"
 #include "scene/scene.h"
 #include "view/state.h"
 

@@ -240,8 +240,8 @@ Fit fitExp2(std::span<const Sample> samples, const Rates& rates) {
 }
 
 Fit fitSinhExp(std::span<const Sample> samples, const Rates& rates, bool exact) {
-  // z is kappa times the extrapolated distance from one face's image to the other's: 1.42 mean free
-  // paths without internal reflection (Milne), more with.
+  // z is kappa times the extrapolated distance from one face's image to the other's: 1.42 transport
+  // mean free paths without internal reflection (Milne), more with.
   std::vector<SinhExpFamily::Parameters> starts;
   for (const double kappa : rates.kappa)
     for (const double paths : {0.5, 1.4, 3.5, 7.0})

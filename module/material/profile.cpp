@@ -29,9 +29,9 @@ constexpr double kWeight[] = {
     0.00387493, 0.0154136, 0.0432322, 0.100446, 0.194117,  0.27667,   0.267858,   0.09838827};
 constexpr double kEdgeError[] = {0.05927, 0.01404, 0.00479, 0.00197, 0.00091, 0.00045, 0.00024, 0.00013};
 
-// d in mean free paths, by Monte Carlo: Lambertian light on a point of a half-space, 2 million photons per
-// index, one walk weighted with each albedo; the d of least worst difference between the half-plane steps.
-// Rows: sqrt(1 - albedo). Columns: index of refraction.
+// d in transport mean free paths, by Monte Carlo: Lambertian light on a point of a half-space, 2 million
+// photons per index, one walk weighted with each albedo; the d of least worst difference between the
+// half-plane steps. Rows: sqrt(1 - albedo). Columns: index of refraction.
 constexpr double kIor[] = {1, 1.05, 1.1, 1.2, 1.3, 1.4, 1.5, 1.7, 2, 2.5, 3};
 constexpr double kAbsorbed[] = {0,    0.005, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2,
                                 0.25, 0.3,   0.4,  0.5,  0.6,  0.7,  0.8,  0.9, 0.95, 1};

@@ -80,11 +80,11 @@ Setup::Setup(const Inputs& inputs)
   // No infinity may reach the plan's text.
   pixelsPerMm = mmPerPixel > 0 ? std::min(1 / mmPerPixel, 1e30) : 0;
   const auto pixels = [&](double mm) { return std::min(mm * pixelsPerMm, 1e30); };
-  float shortestPath = std::numeric_limits<float>::infinity();
+  float shortestLength = std::numeric_limits<float>::infinity();
   for (uint32_t i = 0; i < frame.materialCount; ++i) {
     const PellucidMaterial m = diffused(i);
     (m.thinWalled != 0 ? thinWalls : solids) = true;
-    if (m.thinWalled == 0) shortestPath = std::min(shortestPath, meanFreePath(m));
+    if (m.thinWalled == 0) shortestLength = std::min(shortestLength, diffusionLength(m));
     if (m.gaussianCount == 0) continue;
     diffuses = true;
     const float radius = *std::max_element(m.radius, m.radius + 3);
@@ -97,8 +97,8 @@ Setup::Setup(const Inputs& inputs)
   gatherSpacing = spacingOf(frame);
   gathers = translucency() && gatherSamples > 0 && !debug();
   shapes = gathers && diffuses && has(PELLUCID_RESOURCE_NORMAL);
-  constexpr float kEntriesPerPath = 2;
-  longestEntrySide = shortestPath / (kEntriesPerPath * 1000 * frame.metersPerUnit);
+  constexpr float kEntriesPerLength = 2;
+  longestEntrySide = shortestLength / (kEntriesPerLength * 1000 * frame.metersPerUnit);
 }
 
 }  // namespace pellucid

@@ -43,7 +43,7 @@ struct Setup : Inputs {
   uint32_t gatherSpacing;      // pixels a side of what one probe stands for
   bool gathers;                // lights with a map are gathered from
   bool shapes;                 // curved surfaces return more or less light than planes, as probes find
-  // Of an entry point across the light, scene units: of the frame's shortest mean free path a half. A half
+  // Of an entry point across the light, scene units: half of the frame's shortest diffusion length. A half
   // costs heads 3 % of the gather's error, twice as much 60 % (docs/lab.md).
   float longestEntrySide;
 

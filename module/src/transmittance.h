@@ -131,8 +131,9 @@ inline double opaqueThickness(const PellucidMaterial& m) {
   return most(kMostThickness) > 2e-5 ? INFINITY : depthOf(most, 2e-5, kMostThickness);
 }
 
-// mm that light goes before it falls to 1/e, the mean of the channels; 0 where T's model has no rate.
-inline float meanFreePath(const PellucidMaterial& m) {
+// The diffusion length 1 / kappa, in mm: the depth over which light falls to 1/e. Mean of the channels; 0 where
+// T's model has no rate.
+inline float diffusionLength(const PellucidMaterial& m) {
   float sum = 0;
   for (const float(&t)[5] : m.transmittance) {
     float rate = 0;

@@ -143,17 +143,17 @@ void warnOfTiles(const PellucidFrame& f, Findings& out) {
 
 // Thickness and gather are resolved to a texel. A perspective map's texel depends on the distance.
 void warnOfTexels(const FrameFacts& facts, uint32_t index, Findings& out) {
-  constexpr float kMostPaths = 4;
+  constexpr float kMostLengths = 4;
   const PellucidFrame& f = facts.frame;
   const PellucidShadowMap& s = f.shadowMaps[index];
   if (isPerspective(s)) return;
   const double side = texelSide(s) * static_cast<double>(f.metersPerUnit) * 1000;
   for (uint32_t i = 0; i < f.materialCount; ++i) {
-    const float path = meanFreePath(facts.material(i));
-    if (!(path > 0) || !(side > static_cast<double>(kMostPaths * path))) continue;
+    const float length = diffusionLength(facts.material(i));
+    if (!(length > 0) || !(side > static_cast<double>(kMostLengths * length))) continue;
     out.warning(Field("shadowMaps[", index, "].extent"), "makes a texel ", static_cast<float>(side),
-                " mm long, more than ", kMostPaths, " mean free paths of materials[", i, "], which are ",
-                kMostPaths * path, " mm: thickness and gathered light are resolved to a texel");
+                " mm long, more than ", kMostLengths, " diffusion lengths of materials[", i, "], which are ",
+                kMostLengths * length, " mm: thickness and gathered light are resolved to a texel");
     return;
   }
 }

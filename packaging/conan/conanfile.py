@@ -1,4 +1,4 @@
-"""Conan 2 recipe of the tree in which it lies; packaging/README.md."""
+"""Conan 2 recipe, which builds the tree that contains the recipe. See packaging/README.md."""
 import os
 import re
 
@@ -55,7 +55,7 @@ class Pellucid(ConanFile):
     def package(self):
         copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
         CMake(self).install()
-        for folder in ("cmake", "pkgconfig"):  # Conan writes its own
+        for folder in ("cmake", "pkgconfig"):  # Conan writes these files itself
             rmdir(self, os.path.join(self.package_folder, "lib", folder))
 
     def package_info(self):

@@ -7,7 +7,7 @@
 #include "common/compare.h"
 #include "gpu_fixture.h"
 #include "metrics/spots.h"
-#include "raster/field_mesh.h"
+#include "raster/mesh.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
 #include "scene/model.h"

@@ -5,7 +5,7 @@
 #include "common/far_origin.h"
 #include "gpu/model_builder.h"
 #include "raster/raster.h"
-#include "replay/world_origin.h"
+#include "replay/exposure.h"
 
 namespace {
 

@@ -95,13 +95,13 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
   }
 }
 
-// Texels of 1/4 to 4 mean free paths: what a map of 8 texels a path would give is the truth here.
+// Texels of 1/4 to 4 transport mean free paths. The truth here is the result of a map of 8 texels a path.
 TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
-  const double meanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green
+  const double transportMeanFreePath = 1 / (0.88 + 0.17);  // mm, of skin1 in green
   SceneParameters p{.name = "sphere", .width = 96, .height = 96, .options = {{"radius", 8}, {"extent", 20}}};
   const double across = 2 * 1.1 * 8;  // mm that the map covers
   const auto render = [&](double texelsPerPath) {
-    p.shadowSize = static_cast<int>(std::lround(across / meanFreePath * texelsPerPath));
+    p.shadowSize = static_cast<int>(std::lround(across / transportMeanFreePath * texelsPerPath));
     return gpuGather(replayer(), evenlyLit(p), 16);
   };
   const Capture c = evenlyLit(p);
@@ -111,7 +111,7 @@ TEST_F(GatherAgreement, ErrorGrowsWithTheMapsTexels) {
   const double densities[] = {4, 1, 0.5, 0.25};
   for (int i = 0; i < 4; ++i) {
     const double e = error(c, render(densities[i]), fine);
-    std::printf("%.2f texels a mean free path: %.4f\n", densities[i], e);
+    std::printf("%.2f texels a transport mean free path: %.4f\n", densities[i], e);
     EXPECT_LT(e, limits[i]) << densities[i];
   }
 }
@@ -187,8 +187,8 @@ TEST_F(GatherAgreement, DisplacesOnceForAllLights) {
     ASSERT_NEAR(a.data[i], b.data[i], 3e-3f * (0.2f + b.data[i])) << i;
 }
 
-// What a light of no strength displaces would be missing under a strong one, which grazes other parts of the
-// surface.
+// At rims, gathered light replaces a part of the diffused light. A weak light must replace none of the strong
+// light's part, because the two lights graze different parts of the surface.
 TEST_F(GatherAgreement, WeakLightsChangeNothing) {
   Capture c = litSphere();
   const Image alone = gpuGather(replayer(), c, 16);
@@ -237,7 +237,7 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
       else
         p.options["majorRadius"] = 8;
       p.width = p.height = 96;
-      p.shadowSize = 256;  // 13 texels a mean free path
+      p.shadowSize = 256;  // 13 texels a transport mean free path
       p.orthographic = true;
       Capture c = makeScene(p);
       c.albedo = {};

@@ -48,18 +48,18 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
          "material \"wax\": KHR_materials_scatter has no effect without KHR_materials_transmission");
 }
 
-// The triangle is 2 units wide and high, and red has a mean free path of 1 / (.74 + .032) mm.
+// The triangle is 2 units wide and high, and red has a transport mean free path of 1 / (.74 + .032) mm.
 TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
   const std::string file = write("t.glb", triangle()), out = path("o.exr");
   for (const std::string unit : {"mm", "cm"}) {
     const Outcome outcome =
         run("capture " + file + " --size 64x64 --material wax=skin1 --unit " + unit + " -o " + out);
     EXPECT_EQ(outcome.code, 0) << outcome.text;
-    EXPECT_EQ(outcome.text.find("mean free paths, which are 1.3 mm each in R") != std::string::npos, unit == "mm")
+    EXPECT_EQ(outcome.text.find("transport mean free paths, which are 1.3 mm each in R") != std::string::npos, unit == "mm")
         << outcome.text;
   }
   const std::string ball = "capture --procedural sphere --set extent=9 --size 32x32 -o " + out;
-  expect(0, ball + " --set radius=1.5", "is less than 4 mean free paths, which are ");
+  expect(0, ball + " --set radius=1.5", "is less than 4 transport mean free paths, which are ");
   EXPECT_EQ(run(ball + " --set radius=4").text, "");
 }
 

@@ -4,7 +4,7 @@
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/raster.h"
-#include "raster/simplify.h"
+#include "raster/mesh.h"
 
 namespace {
 

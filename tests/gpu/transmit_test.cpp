@@ -6,7 +6,7 @@
 #include "gpu/gpu_fixture.h"
 #include "gpu/model_builder.h"
 #include "raster/draw.h"
-#include "raster/front.h"
+#include "raster/passes.h"
 #include "raster/raster.h"
 
 namespace {

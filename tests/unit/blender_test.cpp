@@ -1,6 +1,7 @@
 // Renders of Blender: a multilayer EXR and the script's JSON, made here as Cycles would make them.
 #include "capture/blender.h"
 
+#include <functional>
 #include <numbers>
 
 #include "capture_samples.h"
@@ -117,34 +118,26 @@ TEST_F(Blender, OptionalPasses) {
 }
 
 TEST_F(Blender, ErrorsNameWhatIsWrong) {
-  names[4] = "View.Emit.R";
-  write();
-  expectNames(error(), {"render.exr", "irradiance", "View.DiffDir.R", "View.Emit.R"});
-  names[0] = "View.Mist.Z";
-  write();
-  expectNames(error(), {"render.exr", "Depth pass"});
-  names[0] = "View.Depth.Z";
-  names[4] = "Other.Depth.Z";
-  write();
-  expectNames(error(), {"render.exr", "several view layers", "viewLayer"});
-  SetUp();
-  scene["lights"][0]["type"] = "AREA";
-  expectNames(error(), {"render.json", "lights[0].type", "AREA"});
-  SetUp();
-  scene["camera"]["matrixWorld"] = {{1, 0, 0}};
-  expectNames(error(), {"render.json", "camera.matrixWorld", "4 rows"});
-  SetUp();
-  scene["camera"]["matrixWorld"][0][0] = 0;
-  expectNames(error(), {"render.json", "camera.matrixWorld", "no length"});
-  SetUp();
-  scene["materials"].push_back(scene["materials"][0]);
-  expectNames(error(), {"render.json", "materials[1].passIndex", "7 stands twice"});
-  SetUp();
-  scene["materials"][0]["passIndex"] = 8;
-  expectNames(error(), {"render.exr", "material", "holds 7"});
-  SetUp();
-  scene["world"] = 1;
-  expectNames(error(), {"render.json", "world", "unknown key"});
+  const auto expectRefusal = [&](const std::function<void()>& change, const std::vector<std::string>& named) {
+    SetUp();
+    change();
+    write();
+    expectNames(error(), named);
+  };
+  expectRefusal([&] { names[4] = "View.Emit.R"; },
+                {"render.exr", "irradiance", "View.DiffDir.R", "View.Emit.R"});
+  expectRefusal([&] { names[0] = "View.Mist.Z"; }, {"render.exr", "Depth pass"});
+  expectRefusal([&] { names[4] = "Other.Depth.Z"; }, {"render.exr", "viewLayer"});
+  for (const std::vector<std::string>& cells : tableOf(R"(
+/lights/0/type | "AREA" | render.json | lights[0].type | AREA
+/camera/matrixWorld | [[1, 0, 0]] | render.json | camera.matrixWorld | 4 rows
+/camera/matrixWorld/0/0 | 0 | render.json | camera.matrixWorld | no length
+/materials/1 | {"passIndex": 7, "material": {"preset": "skin1"}} | render.json | materials[1].passIndex | 7
+/materials/0/passIndex | 8 | render.exr | material | holds 7
+/world | 1 | render.json | world | unknown key
+)"))
+    expectRefusal([&] { scene[json::json_pointer(cells[0])] = json::parse(cells[1]); },
+                  {cells.begin() + 2, cells.end()});
   std::filesystem::remove(folder / "render.json");
   expectNames(refusalOf([&] { readCapture(folder / "render.exr", ManifestPreset::Blender); }),
               {"render.json", "blender_export.py"});

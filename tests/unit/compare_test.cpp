@@ -120,19 +120,17 @@ std::string runCompare(std::vector<std::string> arguments, std::string* printed 
   addCompareCommand(app);
   arguments.insert(arguments.begin(), "compare");
   std::reverse(arguments.begin(), arguments.end());
+  std::exception_ptr thrown;
   testing::internal::CaptureStdout();
-  const auto captured = [&] {
-    const std::string text = testing::internal::GetCapturedStdout();
-    if (printed) *printed = text;
-    return text;
-  };
   try {
     app.parse(arguments);
   } catch (...) {
-    captured();
-    throw;
+    thrown = std::current_exception();
   }
-  return captured();
+  const std::string text = testing::internal::GetCapturedStdout();
+  if (printed) *printed = text;
+  if (thrown) std::rethrow_exception(thrown);
+  return text;
 }
 
 class CompareCommand : public testing::Test {
@@ -182,30 +180,23 @@ TEST_F(CompareCommand, LimitsDecideTheExitCode) {
   EXPECT_NE(output.find("infinity in 1 pixels of A"), std::string::npos) << output;  // printed all the same
 }
 
-TEST_F(CompareCommand, LimitsMustBeUnderstood) {
+TEST_F(CompareCommand, BadInputIsRefused) {
   for (const char* limit :
        {"rmse=1", "rel_rmse", "rel_rmse=", "rel_rmse=x", "rel_rmse=-1", "rel_rmse=1%", "max=nan"})
     EXPECT_THROW(run({path("near.exr"), path("same.exr"), "--limit", limit}), UsageError) << limit;
-}
-
-TEST_F(CompareCommand, SubsetsNeedACapture) {
+  // Subsets need a capture.
   EXPECT_THROW(run({path("near.exr"), path("same.exr"), "--subset", "unlit"}), UsageError);
   EXPECT_NO_THROW(run({path("near.exr"), path("m.json"), "--subset", "unlit"}));
   EXPECT_THROW(run({path("near.exr"), path("m.json"), "--subset", "lit"}), InputError);  // no pixel is
   EXPECT_NO_THROW(run({path("near.exr"), path("same.exr"), "--mask", path("m.json"), "--subset", "unlit"}));
-}
-
-TEST_F(CompareCommand, BadInputIsNamed) {
   manifest.erase("truth");
   writeText(directory / "m.json", manifest.dump());
-  const auto error = [&](const std::vector<std::string>& arguments) {
-    return refusalOf([&] { run(arguments); });
-  };
-  EXPECT_NE(error({path("near.exr"), path("m.json")}).find("truth"), std::string::npos);
+  expectNames(refusalOf([&] { run({path("near.exr"), path("m.json")}); }), {"truth"});
   write("small.exr", Image(4, 4, 3));
-  const std::string sizes = error({path("near.exr"), path("small.exr")});
-  for (const char* part : {"near.exr", "small.exr", "7x5", "4x4"})
-    EXPECT_NE(sizes.find(part), std::string::npos) << sizes;
+  expectNames(refusalOf([&] {
+                run({path("near.exr"), path("small.exr")});
+              }),
+              {"near.exr", "small.exr", "7x5", "4x4"});
 }
 
 TEST(CompareCommandOfImages, SaysWhatTheEyeSees) {
@@ -231,11 +222,6 @@ TEST(CompareCommandOfImages, SaysWhatTheEyeSees) {
   EXPECT_GT(json["flip"]["mean"].get<double>(), 0.01);
   EXPECT_GT(json["flip"]["p99"].get<double>(), json["flip"]["mean"].get<double>());
   for (const std::string& picture : {ratio, dots}) EXPECT_EQ(readText(picture).substr(1, 3), "PNG");
-  const std::string text = runCompare({a, b});
-  for (const char* part :
-       {"A has 1 (1 bright, 0 dark), 1 of them not in B, which has 0", "red over green", "99th percentile"})
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-
   EXPECT_NO_THROW(
       runCompare({a, b, "--limit", "isolated=1,isolated_alone=1,tint=0.06,flip=0.5,flip_p99=0.9"}));
   for (const char* limit : {"isolated=0", "isolated_alone=0", "tint=0.04", "flip=0.001", "flip_p99=0.001"})

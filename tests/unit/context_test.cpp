@@ -116,15 +116,23 @@ TEST(ContextMemory, FailingHostMemoryIsReported) {
       << "the context, and each shader while its output format is written into it";
 }
 
-TEST(ContextMemory, MissingFunctionsAreNamed) {
+// The sentence that a context of this device is refused with; empty if it is made.
+std::string refusalOf(NullDevice& device, const std::function<void(PellucidContextDesc&)>& change = {}) {
+  Sentences sentences;
+  PellucidContextDesc desc = descOf(device, sentences);
+  if (change) change(desc);
+  PellucidContext* context = nullptr;
+  const PellucidResult result = pellucidCreateContext(&desc, &context);
+  EXPECT_EQ(result, sentences.count > 0 ? PELLUCID_ERROR_MISSING_FEATURE : PELLUCID_OK);
+  pellucidDestroyContext(context);
+  return sentences.last;
+}
+
+TEST(ContextLimits, MissingFunctionsAreNamed) {
   for (const char* name : {"vkCmdPushDescriptorSetKHR", "vkCreateShaderModule", "vkCmdDispatchIndirect"}) {
     NullDevice device;
     device.missing = name;
-    Sentences sentences;
-    const PellucidContextDesc desc = descOf(device, sentences);
-    PellucidContext* context = nullptr;
-    EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE);
-    EXPECT_NE(sentences.last.find(name), std::string::npos) << sentences.last;
+    EXPECT_NE(refusalOf(device).find(name), std::string::npos) << name;
   }
 }
 
@@ -143,53 +151,34 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
               {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
               {"maxPerStageResources", &Limits::maxPerStageResources, 21}};
-  for (const auto& [name, limit, needed] : rows)
-    for (const uint32_t less : {0u, 1u}) {
-      NullDevice device;
-      device.limits.*limit = needed - less;
-      Sentences sentences;
-      const PellucidContextDesc desc = descOf(device, sentences);
-      PellucidContext* context = nullptr;
-      if (less == 0) {
-        EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << name << ": " << sentences.last;
-        pellucidDestroyContext(context);
-        continue;
-      }
-      EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_MISSING_FEATURE) << name;
-      EXPECT_NE(sentences.last.find(std::string(name) + " " + std::to_string(needed - 1) + "; " +
-                                    std::to_string(needed) + " is required"),
-                std::string::npos)
-          << sentences.last;
-    }
+  for (const auto& [name, limit, needed] : rows) {
+    NullDevice enough, less;
+    enough.limits.*limit = needed;
+    less.limits.*limit = needed - 1;
+    EXPECT_EQ(refusalOf(enough), "") << name;
+    const std::string both =
+        std::string(name) + " " + std::to_string(needed - 1) + "; " + std::to_string(needed);
+    EXPECT_NE(refusalOf(less).find(both), std::string::npos) << refusalOf(less);
+  }
 }
 
 TEST(ContextLimits, DescriptorsThatArePushedAndFormatsAreNamed) {
-  const auto sentenceOf = [](NullDevice& device, const std::function<void(PellucidContextDesc&)>& change) {
-    Sentences sentences;
-    PellucidContextDesc desc = descOf(device, sentences);
-    if (change) change(desc);
-    PellucidContext* context = nullptr;
-    const PellucidResult result = pellucidCreateContext(&desc, &context);
-    EXPECT_EQ(result, sentences.count > 0 ? PELLUCID_ERROR_MISSING_FEATURE : PELLUCID_OK);
-    pellucidDestroyContext(context);
-    return sentences.last;
-  };
   NullDevice few;
   few.mostPushed = 20;
-  EXPECT_NE(sentenceOf(few, {}).find("maxPushDescriptors 20; 21 is required"), std::string::npos);
-  EXPECT_EQ(sentenceOf(few, [](PellucidContextDesc& d) { d.options.descriptorPools = 1; }), "");
+  EXPECT_NE(refusalOf(few).find("maxPushDescriptors 20; 21"), std::string::npos);
+  EXPECT_EQ(refusalOf(few, [](PellucidContextDesc& d) { d.options.descriptorPools = 1; }), "");
   NullDevice fixed;
   fixed.writesWithoutFormat = false;
   const auto anyFormat = [](PellucidContextDesc& d) { d.options.outputFormat = VK_FORMAT_UNDEFINED; };
-  EXPECT_NE(sentenceOf(fixed, anyFormat).find("shaderStorageImageWriteWithoutFormat"), std::string::npos);
-  EXPECT_EQ(sentenceOf(fixed, {}), "") << "formats that are fixed need no such feature";
+  EXPECT_NE(refusalOf(fixed, anyFormat).find("shaderStorageImageWriteWithoutFormat"), std::string::npos);
+  EXPECT_EQ(refusalOf(fixed), "") << "formats that are fixed need no such feature";
   fixed.writesWithoutFormat = true;
-  EXPECT_EQ(sentenceOf(fixed, anyFormat), "");
+  EXPECT_EQ(refusalOf(fixed, anyFormat), "");
   for (const VkFormat format :
        {VK_FORMAT_R32_UINT, VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R16G16B16A16_SFLOAT}) {
     NullDevice device;
     device.notStorage = format;
-    EXPECT_NE(sentenceOf(device, {}).find("VkFormat " + std::to_string(format)), std::string::npos);
+    EXPECT_NE(refusalOf(device).find("VkFormat " + std::to_string(format)), std::string::npos);
   }
 }
 
@@ -208,8 +197,7 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
   EXPECT_NE(sentences.last.find("descriptorPools is 2"), std::string::npos) << sentences.last;
   desc.options.descriptorPools = 1;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK) << sentences.last;
-  Frame f;
-  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  CompleteFrame f;
   const PellucidPlan plan = f.plan();
   std::vector<unsigned char> constants;
   NullCommands refused;
@@ -250,8 +238,7 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
       {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 40000; }},
       {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 0x80000001u; }}};
   for (const auto& [words, damage] : damages) {
-    Frame f;
-    for (PellucidImage& image : f.frame.transients) image = Frame::view();
+    CompleteFrame f;
     f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
     f.thesis.minimumDotTableSize = 3;
     f.thesis.minimumDotTable = table;
@@ -276,15 +263,13 @@ TEST(ContextPipelines, AreMadeForPlans) {
   PellucidContext* context = nullptr;
   ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
   const int layouts = device.live;
-  Frame f;
-  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  CompleteFrame f;
   f.frame.options.features = PELLUCID_FEATURE_DIFFUSION;
   const PellucidPlan plan = f.plan();
   std::vector<unsigned char> constants;
   NullCommands commands;
   EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_NE(sentences.last.find("which pellucidCreatePipelines has not made"), std::string::npos)
-      << sentences.last;
+  EXPECT_NE(sentences.last.find("pellucidCreatePipelines"), std::string::npos) << sentences.last;
   EXPECT_EQ(commands.dispatches, 0u);
   std::set<uint32_t> pipelines;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) pipelines.insert(plan.dispatches[i].pipeline);

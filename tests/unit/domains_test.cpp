@@ -19,11 +19,10 @@ using namespace pellucid;
 using pellucid::test::Frame;
 
 // Lacks nothing.
-struct Whole : Frame {
+struct Whole : pellucid::test::CompleteFrame {
   PellucidLightTable table{};
 
   Whole() {
-    for (PellucidImage& image : frame.transients) image = view();
     frame.options.lightTableCount = 1;
     frame.options.lightTables = &table;
   }
@@ -70,31 +69,13 @@ const float kExtremes[] = {std::numeric_limits<float>::quiet_NaN(),
 
 // The struct of a frame that the tables of `Struct` are about, and what its fields are called by.
 template <class Struct>
-Struct& objectOf(Frame& f);
-template <>
-PellucidFrame& objectOf(Frame& f) {
-  return f.frame;
-}
-template <>
-PellucidThesisOptions& objectOf(Frame& f) {
-  return f.thesis;
-}
-template <>
-PellucidMaterial& objectOf(Frame& f) {
-  return f.material;
-}
-template <>
-PellucidLight& objectOf(Frame& f) {
-  return f.lights[0];
-}
-template <>
-PellucidShadowMap& objectOf(Frame& f) {
-  return f.maps[0];
-}
-
-template <>
-PellucidLightTable& objectOf(Frame& f) {
-  return static_cast<Whole&>(f).table;
+Struct& objectOf(Frame& f) {
+  if constexpr (std::is_same_v<Struct, PellucidFrame>) return f.frame;
+  if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return f.thesis;
+  if constexpr (std::is_same_v<Struct, PellucidMaterial>) return f.material;
+  if constexpr (std::is_same_v<Struct, PellucidLight>) return f.lights[0];
+  if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return f.maps[0];
+  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return static_cast<Whole&>(f).table;
 }
 
 template <class Struct>

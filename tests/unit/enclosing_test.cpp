@@ -1,5 +1,5 @@
 // Points inside bodies, and the lights that are refused for lying there.
-#include "raster/enclosing.h"
+#include "raster/bodies.h"
 
 #include <gtest/gtest.h>
 

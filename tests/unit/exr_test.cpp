@@ -10,6 +10,7 @@
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,17 @@ protected:
     return first;
   }
   std::string x() { return (directory / "x.exr").string(); }
+  // Writes floats as x.exr, in the header's data window.
+  void write(Imf::Header header, const std::map<std::string, Image*>& channels) {
+    Imf::FrameBuffer frame;
+    for (const auto& [name, image] : channels) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      frame.insert(name, floats(*image, header.dataWindow()));
+    }
+    Imf::OutputFile file(x().c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writePixels(header.dataWindow().max.y - header.dataWindow().min.y + 1);
+  }
 
   Image values = sampleImage(kSampleWidth, kSampleHeight, 1, 0.3f);
   const Imath::Box2i window{{0, 0}, {kSampleWidth - 1, kSampleHeight - 1}};
@@ -61,15 +73,7 @@ TEST_F(ExrFiles, ScanlinesOfEveryLosslessCompressionAndOrder) {
   for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
                                              Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
     for (const Imf::LineOrder order : {Imf::INCREASING_Y, Imf::DECREASING_Y}) {
-      Imf::Header header(kSampleWidth, kSampleHeight, 1, {0, 0}, 1, order, compression);
-      header.channels().insert("V", Imf::Channel(Imf::FLOAT));
-      {
-        Imf::OutputFile file(x().c_str(), header);
-        Imf::FrameBuffer frame;
-        frame.insert("V", floats(values, window));
-        file.setFrameBuffer(frame);
-        file.writePixels(kSampleHeight);
-      }
+      write(Imf::Header(kSampleWidth, kSampleHeight, 1, {0, 0}, 1, order, compression), {{"V", &values}});
       EXPECT_TRUE(sameBits(readV(), values)) << compression << " " << order;
     }
   }
@@ -106,17 +110,7 @@ TEST_F(ExrFiles, PixelsOutsideTheDataWindowHoldNothing) {
   const Imath::Box2i display({-1, -1}, {kSampleWidth - 2, kSampleHeight - 2}), data({2, 1}, {8, 9});
   Image part = sampleImage(7, 9, 1, 1.0f);
   Image ones(7, 9, 1, 1.0f);
-  Imf::Header header(display, data);
-  for (const char* name : {"V", "Z", "id"}) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-  {
-    Imf::OutputFile file(x().c_str(), header);
-    Imf::FrameBuffer frame;
-    frame.insert("V", floats(part, data));
-    frame.insert("Z", floats(part, data));
-    frame.insert("id", floats(ones, data));
-    file.setFrameBuffer(frame);
-    file.writePixels(9);
-  }
+  write(Imf::Header(display, data), {{"V", &part}, {"Z", &part}, {"id", &ones}});
   manifest["buffers"]["frontDepth"] = {{"file", "x.exr"}, {"channel", "Z"}, {"encoding", "viewZ"}};
   manifest["buffers"]["material"] = {{"file", "x.exr"}, {"channel", "id"}, {"map", {{"0", 1}, {"1", 1}}}};
   manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
@@ -189,16 +183,8 @@ TEST_F(ExrFiles, DeepPartsAreRefusedByName) {
 }
 
 TEST_F(ExrFiles, HugeImagesAreRefusedBeforeTheyAreRead) {
-  {
-    Imf::Header header({{0, 0}, {kMaxExrSide, 0}}, Imath::Box2i({0, 0}, {0, 0}));
-    header.channels().insert("V", Imf::Channel(Imf::FLOAT));
-    Image one(1, 1, 1);
-    Imf::OutputFile file(x().c_str(), header);
-    Imf::FrameBuffer frame;
-    frame.insert("V", floats(one, {{0, 0}, {0, 0}}));
-    file.setFrameBuffer(frame);
-    file.writePixels(1);
-  }
+  Image one(1, 1, 1);
+  write(Imf::Header({{0, 0}, {kMaxExrSide, 0}}, Imath::Box2i({0, 0}, {0, 0})), {{"V", &one}});
   manifest["buffers"]["albedo"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
   expectNames(error(), {"x.exr", "displayWindow", std::to_string(kMaxExrSide + 1) + "x1"});
 }

@@ -1,87 +1,39 @@
-// The random walk against slab transport, and the gather over all texels against the random walk.
+// The gather over all texels against path-traced truth.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "capture/capture.h"
 #include "pellucid/pellucid_material.h"
 #include "reference/gather.h"
-#include "reference/random_walk.h"
-#include "scene/scene.h"
+#include "reference/path_tracer/truth.h"
+#include "reference/path_tracer/walk.h"
+#include "scene/model.h"
 
 namespace {
 
 using namespace pellucid::harness;
 namespace reference = pellucid::harness::reference;
-using reference::WalkMedium;
-using reference::WalkPolyhedron;
 
 constexpr double kScattering[3] = {0.74, 0.88, 1.01}, kAbsorption[3] = {0.032, 0.17, 0.48};  // skin1
 
-WalkPolyhedron slab(double thickness) { return WalkPolyhedron({{{0, 0, 1}, 0}, {{0, 0, -1}, thickness}}); }
-
-// Deviations beyond 4 standard errors happen once in 16000 tries.
-constexpr double kDeviations = 4;
-
 // A pixel; the truth's noise is 1 to 8 % where it is bright and is taken off below.
-constexpr std::size_t kWalks = 20000;
-
-TEST(RandomWalk, IsSlabTransport) {
-  std::uint64_t seed = 1;
-  for (const double ior : {1.0, 1.4})
-    for (const double thickness : {0.5, 2.0})
-      for (int c = 0; c < 3; ++c) {
-        PellucidSlab exact;
-        ASSERT_EQ(
-            pellucidSlabTransport(kScattering[c], kAbsorption[c], ior, thickness, &exact, nullptr, nullptr),
-            PELLUCID_OK);
-        const reference::WalkResult walked = reference::exitance(
-            slab(thickness), {kScattering[c], kAbsorption[c], ior}, {0, 0, 0}, {0, 0, -1}, 40000, seed++);
-        EXPECT_NEAR(walked.mean, exact.transmittance, kDeviations * walked.standardError)
-            << "ior " << ior << " d " << thickness << " channel " << c;
-      }
-}
-
-// What enters a half-space under an oblique light comes back as its diffuse reflectance, whatever the shape.
-TEST(RandomWalk, LargeShapesReflectLikeAHalfSpace) {
-  PellucidSlab exact;
-  ASSERT_EQ(pellucidSlabTransport(1.01, 0.48, 1, INFINITY, &exact, nullptr, nullptr), PELLUCID_OK);
-  const reference::WalkSphere sphere(400);
-  const reference::WalkTorus torus({0, 0, 1}, 1000, 400);
-  const auto check = [&](const reference::WalkShape& shape, const glm::dvec3& point, std::uint64_t seed) {
-    const reference::WalkResult walked =
-        reference::exitance(shape, {1.01, 0.48, 1}, point, shape.normal(point), 40000, seed);
-    EXPECT_NEAR(walked.mean, exact.reflectance, kDeviations * walked.standardError + 1e-3);
-  };
-  check(sphere, {0, 400, 0}, 21);
-  check(torus, {1400, 0, 0}, 22);
-}
-
-TEST(RandomWalk, IsTheSameForAnyNumberOfThreads) {
-  const auto run = [](int jobs) {
-    return reference::exitance(reference::WalkSphere(3), {1, 0.1, 1.3}, {0, 0, 3}, {0, 0, -1}, 2000, 7, jobs);
-  };
-  EXPECT_EQ(run(1).mean, run(3).mean);
-  EXPECT_EQ(run(1).standardError, run(3).standardError);
-}
+constexpr std::uint64_t kWalks = 20000;
 
 // What leaves a ball in light from all around, against walks.
 TEST(GatherBody, BallsReturnWhatWalksDo) {
   struct Case {
     double scattering[3], absorption[3], ior;
     double radius, limit[3];  // mm; relative, noise included
-    std::size_t walks;        // noise of .5 % of the sum
   };
   // With an index of refraction the fit of `excess` (module/src/gather.cpp) leaves 4 %.
-  const Case cases[] = {{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 4, {0.02, 0.03, 0.02}, 2500},
-                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 24, {0.02, 0.02, 0.03}, 2500},
-                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 4, {0.02, 0.04, 0.04}, 2500},
-                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 24, {0.03, 0.03, 0.03}, 2500},
-                        {{2.19, 2.62, 3.0}, {0.0021, 0.0041, 0.0071}, 1.5, 2, {0.02, 0.02, 0.02}, 600}};
-  std::uint64_t seed = 100;
+  const Case cases[] = {{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 4, {0.02, 0.03, 0.02}},
+                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 24, {0.02, 0.02, 0.03}},
+                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 4, {0.02, 0.04, 0.04}},
+                        {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 24, {0.03, 0.03, 0.03}},
+                        {{2.19, 2.62, 3.0}, {0.0021, 0.0041, 0.0071}, 1.5, 2, {0.02, 0.02, 0.02}}};
   for (const Case& k : cases) {
     PellucidMaterialDesc desc;
     pellucidInitMaterialDesc(&desc);
@@ -92,47 +44,29 @@ TEST(GatherBody, BallsReturnWhatWalksDo) {
     PellucidMaterial material;
     ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
     const glm::dvec3 leaves = reference::GatherKernel(material).leavesBall(k.radius);
-    for (int c = 0; c < 3; ++c) {
-      const reference::WalkSphere sphere(k.radius);
-      constexpr int kDirections = 64;
-      double sum = 0;
-      for (int i = 0; i < kDirections; ++i) {
-        // Equal areas of the sphere of directions (Fibonacci lattice); a quarter of its light is each
-        // point's.
-        const double z = (2 * i + 1.0) / kDirections - 1, s = std::sqrt(1 - z * z), turn = 2.39996323 * i;
-        sum += 4 * reference::exitance(sphere, {k.scattering[c], k.absorption[c], k.ior}, {0, 0, k.radius},
-                                       {s * std::cos(turn), s * std::sin(turn), z}, k.walks, seed++)
-                       .mean;
-      }
-      const double walked = sum / kDirections;
-      EXPECT_NEAR(leaves[c] / walked, 1, k.limit[c])
+    SceneModel ball;
+    ball.radius = k.radius;
+    ball.objects.emplace_back().solid = std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(k.radius));
+    const auto scene = reference::makeSolidScene(ball);
+    const reference::TraceMedium medium{{k.scattering[0], k.scattering[1], k.scattering[2]},
+                                        {k.absorption[0], k.absorption[1], k.absorption[2]},
+                                        0,
+                                        k.ior};
+    const reference::SurfacePoint top{{0, 0, k.radius}, {0, 0, 1}, {0, 0, 1}, 0, 1};
+    // The irradiance is 1 wherever a path leaves.
+    constexpr int kBallWalks = 60000;  // noise of .5 %
+    glm::dvec3 walked(0);
+    for (std::uint64_t i = 0; i < kBallWalks; ++i) {
+      reference::PathRandom random(100, 0, i);
+      if (const auto exit = reference::walk(*scene, medium, top, random)) walked += exit->weight;
+    }
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(leaves[c] / (walked[c] / kBallWalks), 1, k.limit[c])
           << "ior " << k.ior << " radius " << k.radius << " channel " << c;
-    }
   }
 }
 
-// A slab's factors are its own, whatever a ball's are; what comes through it stays all of K.
-TEST(GatherBody, SlabsAreNoBalls) {
-  PellucidMaterialDesc desc;
-  ASSERT_EQ(pellucidFindPreset("marble", &desc), PELLUCID_OK);
-  PellucidMaterial material;
-  ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
-  const reference::GatherKernel kernel(material);
-  for (const double thickness : {0.5, 2.0, 8.0}) {
-    const reference::BodyFactors slab = kernel.body(thickness, 0),
-                                 ball = kernel.body(thickness, 2 / thickness);
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_EQ(slab.returned[c], kernel.slabReflectance(thickness)[c]);
-      EXPECT_EQ(slab.through[c], 1);
-      EXPECT_LE(ball.through[c], 1);
-      EXPECT_GE(ball.through[c], 0.5);
-    }
-  }
-  const reference::BodyFactors halfSpace = kernel.body(INFINITY, 0);
-  EXPECT_EQ(halfSpace.returned, glm::dvec3(1));
-}
-
-// One pixel's exitance from all texels, against walks from the same point.
+// One pixel's exitance from all texels, against paths from the same point.
 struct Shape {
   const char* scene;
   std::map<std::string, double> options;
@@ -140,32 +74,17 @@ struct Shape {
 };
 void PrintTo(const Shape& value, std::ostream* out) { *out << value.scene; }
 
-std::unique_ptr<reference::WalkShape> walkShape(const Shape& s) {
-  const std::string name = s.scene;
-  if (name == "sphere") return std::make_unique<reference::WalkSphere>(s.options.at("radius"));
-  if (name == "torus")
-    return std::make_unique<reference::WalkTorus>(glm::dvec3(0, std::sin(0.4), std::cos(0.4)),
-                                                  s.options.at("majorRadius"),
-                                                  s.options.at("majorRadius") * s.options.at("tube"));
-  if (name == "wedge") {
-    const double angle = s.options.at("angle") * M_PI / 180;
-    return std::make_unique<WalkPolyhedron>(std::vector<WalkPolyhedron::Plane>{
-        {{0, 0, 1}, 0},
-        {{-std::sin(angle), 0, -std::cos(angle)}, 0.45 * s.options.at("extent") * std::sin(angle)}});
-  }
-  return std::make_unique<WalkPolyhedron>(slab(s.options.at("thickness")));
-}
-
 class GatherModel : public testing::TestWithParam<std::tuple<Shape, double>> {};
 
-TEST_P(GatherModel, IsNearTheRandomWalk) {
+TEST_P(GatherModel, IsNearTheTruth) {
   const auto& [shape, ior] = GetParam();
-  const Capture c = makeScene({.name = shape.scene,
-                               .width = 48,
-                               .height = 48,
-                               .options = shape.options,
-                               .orthographic = true,
-                               .shadowSize = 384});
+  const SceneParameters parameters{.name = shape.scene,
+                                   .width = 48,
+                                   .height = 48,
+                                   .options = shape.options,
+                                   .orthographic = true,
+                                   .shadowSize = 384};
+  const Capture c = makeScene(parameters);
   PellucidMaterialDesc desc;
   pellucidInitMaterialDesc(&desc);
   desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
@@ -176,25 +95,34 @@ TEST_P(GatherModel, IsNearTheRandomWalk) {
   ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
   const reference::SurfaceReader surfaces(c);
   const reference::Gather gather(c, surfaces, {material});
-  const auto walked = walkShape(shape);
-  const auto& d = c.lights.at(0).direction;
-  const glm::dvec3 toLight = -glm::normalize(glm::dvec3(d[0], d[1], d[2]));
   // Unlit pixels along the middle row, where no light from the front is near.
-  std::uint64_t seed = 1;
+  Capture looked = c;
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 48; ++x)
+      if (y != 24 || x < 6 || x >= 42 || x % 4 != 2 || c.irradiance.at(x, y)[0] > 0)
+        looked.material[static_cast<std::size_t>(48 * y + x)] = 0;
+  const SceneModel model = sceneModel(parameters);
+  const auto scene = reference::makeSolidScene(model);
+  const std::vector<reference::TraceMedium> media = {{{kScattering[0], kScattering[1], kScattering[2]},
+                                                      {kAbsorption[0], kAbsorption[1], kAbsorption[2]},
+                                                      0,
+                                                      ior}};
+  const reference::Emitters emitters{c.lights, {}, {}};
+  const reference::VisibleSurface visible = reference::visibleSurface(looked, *scene);
+  reference::TruthSums sums;
+  reference::TruthTracer(looked, visible, *scene, media, emitters).trace(sums, kWalks, 1, 0, [] {});
+  const Truth truth = reference::truthOf(sums);
   double square[3] = {}, noise[3] = {}, power[3] = {};
-  for (int x = 6; x < 42; x += 4) {
-    const std::size_t i = static_cast<std::size_t>(24 * 48 + x);
-    if (c.material[i] == 0 || c.irradiance.at(x, 24)[0] > 0) continue;
-    const auto surface = surfaces.at(x, 24);
-    const glm::dvec3 point(surfaces.worldFromView() * glm::dvec4(surface->position, 1));
-    const reference::Gathered g = gather.at(*surface, 0);
+  for (std::size_t i = 0; i < looked.material.size(); ++i) {
+    if (looked.material[i] == 0) continue;
+    const reference::Gathered g =
+        gather.at(*surfaces.at(static_cast<int>(i % 48), static_cast<int>(i / 48)), 0);
     for (int k = 0; k < 3; ++k) {
-      const reference::WalkResult truth =
-          reference::exitance(*walked, {kScattering[k], kAbsorption[k], ior}, point, toLight, kWalks, seed++);
-      const double model = g.transmitted[k] + double(material.reflectance[k]) * g.returned[k];
-      square[k] += std::pow(model - truth.mean, 2);
-      noise[k] += std::pow(truth.standardError, 2);
-      power[k] += std::pow(truth.mean, 2);
+      const std::size_t of = 3 * i + static_cast<std::size_t>(k);
+      const double gathered = g.transmitted[k] / double(material.reflectance[k]) + g.returned[k];
+      square[k] += std::pow(gathered - double(truth.image.data[of]), 2);
+      noise[k] += std::pow(double(truth.standardError.data[of]), 2);
+      power[k] += std::pow(double(truth.image.data[of]), 2);
     }
   }
   for (int k = 0; k < 3; ++k) {

@@ -3,7 +3,7 @@
 
 #include "capture/material.h"
 #include "common/png.h"
-#include "gltf/volume.h"
+#include "gltf/material.h"
 #include "gltf_fixture.h"
 #include "pellucid/pellucid_material.h"
 

@@ -105,8 +105,7 @@ TEST(MaterialCommand, SpectrumFromFile) {
   EXPECT_GT(json["channels"][0]["thickness"][0]["exact"], json["channels"][2]["thickness"][0]["exact"]);
 
   std::ofstream(path) << "400,2,0.5\n700,2\n";
-  EXPECT_EQ(refusal("--spectral " + path.string()),
-            path.string() + ": line 2: \"700,2\" is not three numbers");
+  EXPECT_EQ(refusal("--spectral " + path.string()).find(path.string() + ": line 2: \"700,2\""), 0u);
   std::ofstream(path) << "400,2,0.5\n700,2,-1\n";
   EXPECT_NE(refusal("--spectral " + path.string()).find("spectralAbsorption[1]: -1"), std::string::npos);
   std::ofstream(path) << "";
@@ -115,10 +114,11 @@ TEST(MaterialCommand, SpectrumFromFile) {
 }
 
 TEST(MaterialCommand, RefusalsNameTheField) {
-  EXPECT_NE(refusal("gravel").find("gravel"), std::string::npos);
-  EXPECT_NE(refusal("skin1 --ior 0.5").find("ior: 0.5"), std::string::npos);
-  EXPECT_NE(refusal("skin1 --thickness inf").find("thickness"), std::string::npos);
-  EXPECT_NE(refusal("--scattering nan,1,1 --absorption 1,1,1").find("scattering[0]: nan"), std::string::npos);
+  for (const auto& [arguments, named] : {std::pair("gravel", "gravel"),
+                                         {"skin1 --ior 0.5", "ior: 0.5"},
+                                         {"skin1 --thickness inf", "thickness"},
+                                         {"--scattering nan,1,1 --absorption 1,1,1", "scattering[0]: nan"}})
+    EXPECT_NE(refusal(arguments).find(named), std::string::npos) << arguments;
   EXPECT_THROW(run("--scattering 1,1,1"), UsageError);
   EXPECT_THROW(run("skin1 --melanin 0.1"), UsageError);
   EXPECT_THROW(run(""), UsageError);

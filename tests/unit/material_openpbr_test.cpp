@@ -131,28 +131,24 @@ TEST(OpenPbr, ColorsOfTheSolverAndOfKullaAndConty) {
 }
 
 TEST(OpenPbr, WrongValuesAreNamed) {
-  const auto complaint = [](auto&& change) {
+  const std::pair<const char*, void (*)(PellucidOpenPbr&)> rows[] = {
+      {"subsurfaceColor[1]: 1.2", [](auto& m) { m.subsurfaceColor[1] = 1.2; }},
+      {"subsurfaceRadius: 0", [](auto& m) { m.subsurfaceRadius = 0; }},
+      {"subsurfaceRadius: ", [](auto& m) { m.subsurfaceRadius = 1e30; }},
+      {"subsurfaceRadiusScale[2]: -1", [](auto& m) { m.subsurfaceRadiusScale[2] = -1; }},
+      {"subsurfaceScatterAnisotropy: 1", [](auto& m) { m.subsurfaceScatterAnisotropy = 1; }},
+      {"specularIor: nan", [](auto& m) { m.specularIor = NAN; }},
+      {"millimetersPerUnit: 0", [](auto& m) { m.millimetersPerUnit = 0; }},
+      {"structSize: ", [](auto& m) { m.structSize = 8; }}};
+  for (const auto& [words, change] : rows) {
     PellucidOpenPbr material;
     pellucidInitOpenPbr(&material);
     change(material);
     PellucidMaterialDesc desc;
-    Complaint result;
-    EXPECT_NE(pellucidDescribeOpenPbr(&material, &desc, note, &result), PELLUCID_OK);
-    return result.field + ": " + result.sentence;
-  };
-  EXPECT_EQ(complaint([](auto& m) { m.subsurfaceColor[1] = 1.2; }),
-            "subsurfaceColor[1]: 1.2 is not within 0 to 1");
-  EXPECT_EQ(complaint([](auto& m) { m.subsurfaceRadius = 0; }),
-            "subsurfaceRadius: 0 is not a finite number above 0");
-  EXPECT_EQ(complaint([](auto& m) { m.subsurfaceRadiusScale[2] = -1; }),
-            "subsurfaceRadiusScale[2]: -1 is not a finite number above 0");
-  EXPECT_EQ(complaint([](auto& m) { m.subsurfaceScatterAnisotropy = 1; }),
-            "subsurfaceScatterAnisotropy: 1 is not between -1 and 1");
-  EXPECT_EQ(complaint([](auto& m) { m.specularIor = NAN; }), "specularIor: nan is not within 1 to 3");
-  EXPECT_EQ(complaint([](auto& m) { m.millimetersPerUnit = 0; }),
-            "millimetersPerUnit: 0 is not a finite number above 0");
-  EXPECT_EQ(complaint([](auto& m) { m.subsurfaceRadius = 1e30; }).substr(0, 17), "subsurfaceRadius:");
-  EXPECT_EQ(complaint([](auto& m) { m.structSize = 8; }).substr(0, 11), "structSize:");
+    Complaint complaint;
+    EXPECT_NE(pellucidDescribeOpenPbr(&material, &desc, note, &complaint), PELLUCID_OK);
+    EXPECT_TRUE((complaint.field + ": " + complaint.sentence).starts_with(words)) << complaint.sentence;
+  }
   PellucidMaterialDesc desc;
   EXPECT_EQ(pellucidDescribeOpenPbr(nullptr, &desc, nullptr, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
 }

@@ -45,10 +45,15 @@ PellucidMaterialDesc described(double scattering, double absorption, double ior)
   return desc;
 }
 
-PellucidMaterialDesc preset(const char* name, double ior = 0) {
+PellucidMaterialDesc ofKind(uint32_t kind) {
   PellucidMaterialDesc desc;
   pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_PRESET;
+  desc.kind = kind;
+  return desc;
+}
+
+PellucidMaterialDesc preset(const char* name, double ior = 0) {
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_PRESET);
   desc.preset = name;
   desc.ior = ior;
   return desc;
@@ -105,28 +110,18 @@ TEST(Material, FitsEveryPresetAtEveryIndex) {
       const Compiled compiled = compile(desc);
       EXPECT_EQ(compiled.report.ior, ior);
       expectTransmittance(compiled.material);
+      // Without a Fresnel boundary the ballistic light of skin1's green and blue bends T more than the form
+      // can follow: 0.17 and 0.24 %.
+      const bool isSkin = (name == "skin1" && ior > 1) || name == "skin2";
       const std::array<double, 3> worst = worstError(desc, compiled.material);
       for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_LT(worst[c], 0.003) << name << ' ' << ior << ' ' << c;
+        EXPECT_LT(worst[c], isSkin ? 0.001 : 0.003) << name << ' ' << ior << ' ' << c;
         // Between the samples of the fit a little more than on them.
         EXPECT_LT(worst[c], compiled.report.channels[c].transmittanceError * 1.05 + 1e-5)
             << name << ' ' << ior;
       }
     }
   }
-}
-
-TEST(Material, FitsSkinToATenthOfAPercent) {
-  for (const char* name : {"skin1", "skin2"})
-    for (const double ior : {1.0, 1.3, 1.4, 1.5}) {
-      // Without a Fresnel boundary the ballistic light of skin1's green and blue bends T more than the
-      // form can follow: 0.17 and 0.24 %.
-      if (std::string(name) == "skin1" && ior == 1.0) continue;
-      const PellucidMaterialDesc desc = preset(name, ior);
-      const Compiled compiled = compile(desc);
-      for (const double worst : worstError(desc, compiled.material))
-        EXPECT_LT(worst, 0.001) << name << ' ' << ior;
-    }
 }
 
 TEST(Material, DenseAndThinMediaGetARangeOfTheirOwn) {
@@ -208,9 +203,7 @@ TEST(Material, GaussiansAndRadius) {
 }
 
 TEST(Material, ExplicitGaussians) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_GAUSSIANS;
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_GAUSSIANS);
   desc.gaussianCount = 2;
   desc.gaussianVariance[0] = 0.5;
   desc.gaussianVariance[1] = 2;
@@ -229,9 +222,7 @@ TEST(Material, ExplicitGaussians) {
 }
 
 TEST(Material, BurleyDistance) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_BURLEY;
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_BURLEY);
   std::fill_n(desc.burleyDistance, 3, 0.7);
   const Compiled burley = compile(desc);
   EXPECT_FLOAT_EQ(burley.material.burleyDistance[1], 0.7f);
@@ -277,9 +268,7 @@ TEST(Material, ThreeLayerSkin) {
 }
 
 PellucidMaterialDesc physiological(double melanin, double hemoglobin) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_SKIN;
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_SKIN);
   desc.melanin = melanin;
   desc.hemoglobin = hemoglobin;
   return desc;
@@ -312,9 +301,7 @@ TEST(Material, FlatSpectrumIsRgb) {
   const double wavelength[] = {400, 700}, scattering[] = {2, 2}, absorption[] = {0.05, 0.05};
   const Compiled rgb = compile(described(2, 0.05, 1.4));
   for (const uint32_t illuminant : {PELLUCID_ILLUMINANT_D65, PELLUCID_ILLUMINANT_A, PELLUCID_ILLUMINANT_E}) {
-    PellucidMaterialDesc desc;
-    pellucidInitMaterialDesc(&desc);
-    desc.kind = PELLUCID_MATERIAL_SPECTRAL;
+    PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_SPECTRAL);
     setSpectrum(desc, 2, wavelength, scattering, absorption);
     desc.illuminant = illuminant;
     const Compiled spectral = compile(desc);
@@ -330,9 +317,7 @@ TEST(Material, SpectrumIsIntegratedNotAveraged) {
   // Opaque above 560 nm, clear below: averaged coefficients would make blue dark as well.
   const double wavelength[] = {380, 559, 561, 780}, scattering[] = {1, 1, 1, 1},
                absorption[] = {0.01, 0.01, 1e3, 1e3};
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_SPECTRAL;
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_SPECTRAL);
   setSpectrum(desc, 4, wavelength, scattering, absorption);
   const std::vector<PellucidSlab> exact = slabs(desc, {1.0});
   PellucidSlab clear;
@@ -357,9 +342,7 @@ TEST(Material, SlabTransport) {
 }
 
 TEST(Material, ThinWallsTransmitTheSameAtEveryThickness) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_THIN_WALL;
+  PellucidMaterialDesc desc = ofKind(PELLUCID_MATERIAL_THIN_WALL);
   const double reflectance[] = {0.25, 0.5, 0}, transmittance[] = {0.5, 0.25, 1};
   std::copy_n(reflectance, 3, desc.wallReflectance);
   std::copy_n(transmittance, 3, desc.wallTransmittance);
@@ -387,80 +370,63 @@ TEST(Material, ThinWallsTransmitTheSameAtEveryThickness) {
 
 struct BadCase {
   const char* field;
+  uint32_t kind;
   void (*spoil)(PellucidMaterialDesc&);
 };
 
 TEST(Material, BadInputNamesTheField) {
   static const double rising[] = {400, 500}, falling[] = {500, 400}, ultraviolet[] = {200, 300},
                       ones[] = {1, 1}, negative[] = {1, -1};
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                   kInfinity = std::numeric_limits<double>::infinity();
+  const auto coefficients = PELLUCID_MATERIAL_COEFFICIENTS, burley = PELLUCID_MATERIAL_BURLEY,
+             gaussians = PELLUCID_MATERIAL_GAUSSIANS, wall = PELLUCID_MATERIAL_THIN_WALL,
+             spectral = PELLUCID_MATERIAL_SPECTRAL, named = PELLUCID_MATERIAL_PRESET,
+             skin = PELLUCID_MATERIAL_SKIN;
+  using Desc = PellucidMaterialDesc;
   const BadCase cases[] = {
-      {"scattering[1]", [](PellucidMaterialDesc& d) { d.scattering[1] = -0.5; }},
-      {"absorption[2]",
-       [](PellucidMaterialDesc& d) { d.absorption[2] = std::numeric_limits<double>::quiet_NaN(); }},
-      {"scattering[0]",
-       [](PellucidMaterialDesc& d) { d.scattering[0] = std::numeric_limits<double>::infinity(); }},
-      {"scattering[2]", [](PellucidMaterialDesc& d) { d.scattering[2] = d.absorption[2] = 0; }},
-      {"scattering[0]", [](PellucidMaterialDesc& d) { d.scattering[0] = 1e9; }},
-      {"ior", [](PellucidMaterialDesc& d) { d.ior = 0.9; }},
-      {"ior", [](PellucidMaterialDesc& d) { d.ior = std::numeric_limits<double>::quiet_NaN(); }},
-      {"g", [](PellucidMaterialDesc& d) { d.g = 1; }},
-      {"millimetersPerUnit", [](PellucidMaterialDesc& d) { d.millimetersPerUnit = -1; }},
-      {"gaussianCount", [](PellucidMaterialDesc& d) { d.gaussianCount = 9; }},
-      {"gaussianCount", [](PellucidMaterialDesc& d) { d.gaussianCount = 0; }},
-      {"kind", [](PellucidMaterialDesc& d) { d.kind = 77; }},
-      {"preset", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_PRESET; }},
-      {"preset", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_PRESET, d.preset = "gravel"; }},
-      {"burleyDistance[0]", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_BURLEY; }},
-      {"transmittance[1]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_BURLEY;
+      {"scattering[1]", coefficients, [](Desc& d) { d.scattering[1] = -0.5; }},
+      {"absorption[2]", coefficients, [](Desc& d) { d.absorption[2] = kNan; }},
+      {"scattering[0]", coefficients, [](Desc& d) { d.scattering[0] = kInfinity; }},
+      {"scattering[2]", coefficients, [](Desc& d) { d.scattering[2] = d.absorption[2] = 0; }},
+      {"scattering[0]", coefficients, [](Desc& d) { d.scattering[0] = 1e9; }},
+      {"ior", coefficients, [](Desc& d) { d.ior = 0.9; }},
+      {"ior", coefficients, [](Desc& d) { d.ior = kNan; }},
+      {"g", coefficients, [](Desc& d) { d.g = 1; }},
+      {"millimetersPerUnit", coefficients, [](Desc& d) { d.millimetersPerUnit = -1; }},
+      {"gaussianCount", coefficients, [](Desc& d) { d.gaussianCount = 9; }},
+      {"gaussianCount", coefficients, [](Desc& d) { d.gaussianCount = 0; }},
+      {"kind", 77, [](Desc&) {}},
+      {"preset", named, [](Desc&) {}},
+      {"preset", named, [](Desc& d) { d.preset = "gravel"; }},
+      {"burleyDistance[0]", burley, [](Desc&) {}},
+      {"transmittance[1]", burley,
+       [](Desc& d) {
          std::fill_n(d.burleyDistance, 3, 1.0);
          for (auto& row : d.transmittance) row[0] = row[1] = 0.5;
          d.transmittance[1][0] = 2;
        }},
-      {"gaussianVariance[5]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_GAUSSIANS;
-         std::fill_n(d.gaussianVariance, 5, 1.0);
+      {"gaussianVariance[5]", gaussians, [](Desc& d) { std::fill_n(d.gaussianVariance, 5, 1.0); }},
+      {"gaussianWeight[0]", gaussians, [](Desc& d) { std::fill_n(d.gaussianVariance, 8, 1.0); }},
+      {"wallReflectance[1]", wall, [](Desc& d) { d.wallReflectance[1] = 1.5; }},
+      {"wallTransmittance[0]", wall, [](Desc& d) { d.wallTransmittance[0] = -0.5; }},
+      {"wallTransmittance[2]", wall, [](Desc& d) { d.wallReflectance[2] = d.wallTransmittance[2] = 0.75; }},
+      {"burleyDistance[1]", wall, [](Desc& d) { d.burleyDistance[0] = 1; }},
+      {"wavelengthCount", spectral, [](Desc&) {}},
+      {"wavelength[1]", spectral, [](Desc& d) { setSpectrum(d, 2, falling, ones, ones); }},
+      {"wavelength", spectral, [](Desc& d) { setSpectrum(d, 2, ultraviolet, ones, ones); }},
+      {"spectralAbsorption[1]", spectral, [](Desc& d) { setSpectrum(d, 2, rising, ones, negative); }},
+      {"illuminant", spectral,
+       [](Desc& d) {
+         setSpectrum(d, 2, rising, ones, ones);
+         d.illuminant = 3;
        }},
-      {"gaussianWeight[0]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_GAUSSIANS;
-         std::fill_n(d.gaussianVariance, 8, 1.0);
-       }},
-      {"wallReflectance[1]",
-       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.wallReflectance[1] = 1.5; }},
-      {"wallTransmittance[0]",
-       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.wallTransmittance[0] = -0.5; }},
-      {"wallTransmittance[2]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_THIN_WALL;
-         d.wallReflectance[2] = d.wallTransmittance[2] = 0.75;
-       }},
-      {"burleyDistance[1]",
-       [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_THIN_WALL, d.burleyDistance[0] = 1; }},
-      {"wavelengthCount", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SPECTRAL; }},
-      {"wavelength[1]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, falling, ones, ones);
-       }},
-      {"wavelength",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, ultraviolet, ones, ones);
-       }},
-      {"spectralAbsorption[1]",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, rising, ones, negative);
-       }},
-      {"illuminant",
-       [](PellucidMaterialDesc& d) {
-         d.kind = PELLUCID_MATERIAL_SPECTRAL, setSpectrum(d, 2, rising, ones, ones), d.illuminant = 3;
-       }},
-      {"melanin", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SKIN, d.melanin = 1.5; }},
-      {"hemoglobin", [](PellucidMaterialDesc& d) { d.kind = PELLUCID_MATERIAL_SKIN, d.hemoglobin = -1; }},
+      {"melanin", skin, [](Desc& d) { d.melanin = 1.5; }},
+      {"hemoglobin", skin, [](Desc& d) { d.hemoglobin = -1; }},
   };
   for (const BadCase& bad : cases) {
     PellucidMaterialDesc desc = described(1, 0.1, 1.4);
+    desc.kind = bad.kind;
     bad.spoil(desc);
     Complaint complaint;
     PellucidMaterial material = {};

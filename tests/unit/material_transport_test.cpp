@@ -1,7 +1,6 @@
 // The exact solver: analytic limits, published values, an independent doubling code, Monte Carlo.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -72,49 +71,6 @@ TEST(MaterialTransport, ThickSlabsFallWithTheCaseEigenvalue) {
   }
 }
 
-// Doubling from a thin layer in which light scatters at most once; second order in the layer's depth.
-struct Doubled {
-  Eigen::MatrixXd reflection, transmission;
-};
-
-Doubled doubled(const Angles& angles, const Coefficients& c, double thickness, int doublings) {
-  const Eigen::Index n = angles.mu.size();
-  const double depth = thickness * c.extinction() / std::ldexp(1.0, doublings);
-  const Eigen::VectorXd inverse = angles.mu.cwiseInverse();
-  // Diamond initialization (Wiscombe 1976): centered differences over the layer.
-  const Eigen::MatrixXd scatter = c.albedo() / 2 * depth / 2 * inverse * angles.weight.transpose();
-  const Eigen::MatrixXd loss = Eigen::MatrixXd((depth / 2 * inverse).asDiagonal()) - scatter;
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(n, n);
-  const Eigen::MatrixXd gain = (identity + loss).inverse();
-  const Eigen::MatrixXd bounce = gain * scatter;
-  const Eigen::MatrixXd core = (identity - bounce * bounce).inverse();
-  Doubled layer;
-  layer.transmission = 2 * core * gain - identity;
-  layer.reflection = 2 * core * bounce * gain;
-  for (int i = 0; i < doublings; ++i) {
-    const Eigen::MatrixXd inner = (identity - layer.reflection * layer.reflection).inverse();
-    const Eigen::MatrixXd through = inner * layer.transmission;
-    layer.reflection = layer.reflection + layer.transmission * layer.reflection * through;
-    layer.transmission = layer.transmission * through;
-  }
-  return layer;
-}
-
-TEST(MaterialTransport, EigenmodesAgreeWithDoubling) {
-  for (const double ior : {1.0, 1.4}) {
-    const Angles angles = makeAngles(ior);
-    for (const Coefficients c : {Coefficients{1, 0.1}, {0.2, 1}, {3, 0}}) {
-      const Medium medium(angles, c);
-      for (const double d : {0.05, 1.0, 6.0}) {
-        const Doubled reference = doubled(angles, c, d, 22);
-        const Response own = medium.layer(d);
-        EXPECT_LT((own.near - reference.reflection).cwiseAbs().maxCoeff(), 1e-7) << ior << ' ' << d;
-        EXPECT_LT((own.far - reference.transmission).cwiseAbs().maxCoeff(), 1e-7) << ior << ' ' << d;
-      }
-    }
-  }
-}
-
 TEST(MaterialTransport, LayersOfOneMediumAreOneLayer) {
   const Angles angles = makeAngles(1.4);
   const Medium medium(angles, {0.74, 0.032});
@@ -150,27 +106,6 @@ TEST(MaterialTransport, Giovanelli) {
   const double r = fresnelReflectance(1, 1.5);
   const double total = r + (1 - r) * response.near(angles.normal, 0) / (1.5 * 1.5);
   EXPECT_NEAR(total, 0.2600, 1e-4);  // the digits published
-}
-
-// van de Hulst 1980: a slab of 2 mean free paths, albedo 0.9, g = 0.75, normal incidence, no boundaries.
-TEST(MaterialTransport, VanDeHulstByMonteCarlo) {
-  monte_carlo::Setup setup{{{9, 1, 0.2}}, 1, 0.75, true};
-  const monte_carlo::Totals slab = monte_carlo::totals(setup, 400000, 1);
-  // Four standard deviations of a share p of 400000 photons: 4 sqrt(p (1 - p) / N).
-  EXPECT_NEAR(slab.reflected, 0.09739, 0.0019);
-  EXPECT_NEAR(slab.transmitted, 0.66096, 0.0030);
-}
-
-TEST(MaterialTransport, SlabAgreesWithMonteCarlo) {
-  const Angles angles = makeAngles(1.4);
-  const Medium medium(angles, {0.74, 0.032});
-  const Slab slab = medium.slab(2);
-  monte_carlo::Setup setup{{{0.74, 0.032, 2}}, 1.4};
-  const monte_carlo::Totals lambertian = monte_carlo::totals(setup, 200000, 2);
-  EXPECT_NEAR(lambertian.transmitted, slab.transmittance, 0.0045);  // four standard deviations
-  EXPECT_NEAR(lambertian.reflected, slab.reflectance, 0.0043);
-  setup.normalIncidence = true;
-  EXPECT_NEAR(monte_carlo::totals(setup, 200000, 3).transmitted, slab.transmittanceNormal, 0.0045);
 }
 
 TEST(MaterialTransport, LayeredHalfSpaceAgreesWithMonteCarlo) {

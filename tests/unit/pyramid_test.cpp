@@ -1,10 +1,13 @@
-// Where the diffusion pyramid's levels lie: apart, and inside the images that the plan asks for.
+// The diffusion pyramid: its levels lie apart, and how much of a profile lies at its elements.
 #include "pyramid.h"
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pyramid_energy.h"
 
 namespace pellucid {
 namespace {
@@ -18,8 +21,7 @@ bool apart(const Box& a, const Box& b) {
 }
 
 void expectApart(uint32_t width, uint32_t height, Rect rect) {
-  SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
-  if (rect.width == 0) rect = {0, 0, width, height};
+  SCOPED_TRACE(testing::Message() << width << " x " << height);
   const Pyramid pyramid({width, height}, rect);
   const auto box = [&](uint32_t level) {
     const PyramidPlace& p = pyramid.levels[level];
@@ -42,15 +44,47 @@ void expectApart(uint32_t width, uint32_t height, Rect rect) {
 
 TEST(Pyramid, LevelsLieApart) {
   for (uint32_t width = 1; width <= 140; ++width)
-    for (const uint32_t height : {1u, 2u, 47u, 64u, 139u}) expectApart(width, height, {});
-  expectApart(1920, 1080, {});
-  expectApart(1921, 1081, {});
-  expectApart(3840, 2160, {});
-}
-
-TEST(Pyramid, LevelsOfPartsLieApart) {
+    for (const uint32_t height : {1u, 2u, 47u, 64u, 139u}) expectApart(width, height, {0, 0, width, height});
+  for (const auto& [width, height] : {std::pair(1920u, 1080u), {1921u, 1081u}, {3840u, 2160u}})
+    expectApart(width, height, {0, 0, width, height});
   for (uint32_t x = 0; x < 9; ++x)
     for (uint32_t width = 1; width <= 61 - x; width += 3) expectApart(61, 47, {x, x / 2, width, 41});
+}
+
+double at(const EnergyFrom& from, double x) {
+  const double i = (x - from.first) / EnergyFrom::kStep;
+  const auto last = static_cast<double>(from.samples.size() - 1);
+  if (i <= 0) return 0;
+  if (i >= last) return 1;
+  const auto low = static_cast<size_t>(i);
+  return std::lerp(from.samples[low], from.samples[low + 1], i - std::floor(i));
+}
+
+// Burley's profile with d = 1 is a mixture of Gaussians, over all deviations s; see pyramid_energy.cpp.
+TEST(PyramidEnergy, OfBurleyIsThatOfItsGaussians) {
+  constexpr double kStep = 0.01;
+  for (int i = kFine; i < kElements; ++i) {
+    const auto element = static_cast<Element>(i);
+    const EnergyFrom gaussian = gaussianEnergy(element), burley = burleyEnergy(element);
+    for (double x = -9; x < 10; x += 0.3) {  // between samples, too
+      double mixed = 0;
+      for (double octave = -20; octave < 5; octave += kStep) {
+        const double s = std::exp2(octave);
+        const double density =
+            std::sqrt(2 / std::numbers::pi) / 4 * (std::exp(-s * s / 2) + std::exp(-s * s / 18));
+        mixed += at(gaussian, octave + x) * density * s * std::numbers::ln2 * kStep;
+      }
+      EXPECT_NEAR(at(burley, x), mixed, 2e-3) << i << " at " << x;
+    }
+  }
+}
+
+// Plans leave out levels by it.
+TEST(PyramidEnergy, CoarserLevelsBeginWhereStated) {
+  const EnergyFrom coarser = gaussianEnergy(kCoarser);
+  for (double x = coarser.first; x <= kCoarserBegins; x += EnergyFrom::kStep)
+    EXPECT_LE(at(coarser, x), 1e-3) << x;
+  EXPECT_GT(at(coarser, kCoarserBegins + 2 * EnergyFrom::kStep), 1e-3);
 }
 
 }  // namespace

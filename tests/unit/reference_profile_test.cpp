@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
-#include "reference/footprint_integral.h"
 #include "reference_captures.h"
 
 namespace pellucid::harness::reference {

@@ -10,7 +10,6 @@
 #include "common/error.h"
 #include "refusal.h"
 #include "scene/model.h"
-#include "scene/polynomial.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
@@ -54,82 +53,71 @@ double thicknessError(const SceneParameters& parameters, const std::function<dou
 // Distance of the ray's line from the origin, and of the eye.
 double lineDistance(const Ray& ray) { return glm::length(glm::cross(ray.origin, ray.direction)); }
 
-class SceneThickness : public ::testing::TestWithParam<bool> {
-protected:
-  SceneParameters parameters(const std::string& name, std::map<std::string, double> options = {}) const {
-    SceneParameters p = sized(name, 64);
-    p.orthographic = GetParam();
-    p.options = std::move(options);
-    return p;
-  }
-};
-INSTANTIATE_TEST_SUITE_P(Projections, SceneThickness, ::testing::Bool(),
-                         [](const auto& test) { return test.param ? "Orthographic" : "Perspective"; });
-
-// Thickness away from silhouettes; at them its relative error grows without bound as it goes to 0.
-constexpr double kTolerance = 1e-6;
-
-TEST_P(SceneThickness, SlabIsThicknessOverCosine) {
-  for (const double tilt : {0.0, 50.0}) {
-    const double angle = tilt * std::numbers::pi / 180;
-    const auto exact = [&](const Ray& ray) {
-      return 4 / std::abs(ray.direction.x * std::sin(angle) + ray.direction.z * std::cos(angle));
-    };
-    EXPECT_LT(thicknessError(parameters("slab", {{"tilt", tilt}}), exact, 1), kTolerance) << tilt;
-  }
+// The first sheet, the chord and the way to the cavity, in closed form.
+double slabThickness(const Ray& ray, double degrees, double thickness) {
+  const double angle = degrees * std::numbers::pi / 180;
+  return thickness / std::abs(ray.direction.x * std::sin(angle) + ray.direction.z * std::cos(angle));
 }
 
-TEST_P(SceneThickness, WedgeIsProportionalToTheDistanceFromTheEdge) {
+double wedgeThickness(const Ray& ray) {
   const double tangent = std::tan(15 * std::numbers::pi / 180);
-  const auto exact = [&](const Ray& ray) {
-    // Along the axis: x tan(angle). Obliquely, intersect with the back face z = -(x - edge) tan.
-    const double x = ray.at(-ray.origin.z / ray.direction.z).x + 18;
-    return x * tangent / (-ray.direction.z - ray.direction.x * tangent);
-  };
-  EXPECT_LT(thicknessError(parameters("wedge"), exact, 0.01), kTolerance);
+  // Along the axis: x tan(angle). Obliquely, intersect with the back face z = -(x - edge) tan.
+  const double x = ray.at(-ray.origin.z / ray.direction.z).x + 18;
+  return x * tangent / (-ray.direction.z - ray.direction.x * tangent);
 }
 
-TEST_P(SceneThickness, SphereIsItsChord) {
-  const auto exact = [](const Ray& ray) {
-    return 2 * std::sqrt(std::max(0.0, 64 - std::pow(lineDistance(ray), 2)));
-  };
-  EXPECT_LT(thicknessError(parameters("sphere", {{"extent", 18}}), exact, 0.5), kTolerance);
+double halfChord(const Ray& ray, double radius) {
+  return std::sqrt(std::max(0.0, radius * radius - std::pow(lineDistance(ray), 2)));
 }
 
-TEST_P(SceneThickness, HollowSphereEndsAtTheInnerSurface) {
-  const auto exact = [](const Ray& ray) {
-    const double square = std::pow(lineDistance(ray), 2);
-    return std::sqrt(std::max(0.0, 64 - square)) - std::sqrt(std::max(0.0, 36 - square)) +
-           (square >= 36 ? std::sqrt(std::max(0.0, 64 - square)) : 0);
-  };
-  EXPECT_LT(thicknessError(parameters("hollow_sphere", {{"extent", 18}}), exact, 0.5), kTolerance);
-}
-
-TEST_P(SceneThickness, TwoSheetsIsTheFirstSheet) {
-  const auto exact = [](const Ray& ray) { return 2 / std::abs(ray.direction.z); };
-  EXPECT_LT(thicknessError(parameters("two_sheets"), exact, 1), kTolerance);
-}
-
-TEST_P(SceneThickness, TorusAgreesWithDistanceBisection) {
-  // Found without the quartic: the distance to a torus is known exactly, so march and bisect it.
+// Found without the quartic: the distance to a torus is known exactly, so march and bisect it.
+double torusThickness(const Ray& ray) {
   const double tilt = 30 * std::numbers::pi / 180;
   const glm::dvec3 axis(0, std::sin(tilt), std::cos(tilt));
   const auto distance = [&](const glm::dvec3& p) {
     const double height = glm::dot(p, axis);
     return std::hypot(glm::length(p - height * axis) - 12, height) - 3.6;
   };
-  const auto exact = [&](const Ray& ray) {
-    const auto crossing = [&](double t, double end, double sign) {
-      while (t < end && sign * distance(ray.at(t)) > 0) t += std::max(1e-3, sign * distance(ray.at(t)));
-      if (t >= end) return kInfinity;
-      double a = t - std::max(2e-3, 2 * std::abs(distance(ray.at(t)))), b = t;
-      for (int i = 0; i < 60; ++i) (sign * distance(ray.at((a + b) / 2)) > 0 ? a : b) = (a + b) / 2;
-      return (a + b) / 2;
-    };
-    const double enter = crossing(100, 300, 1);
-    return std::isinf(enter) ? 0.0 : crossing(enter + 1e-6, 300, -1) - enter;
+  const auto crossing = [&](double t, double end, double sign) {
+    while (t < end && sign * distance(ray.at(t)) > 0) t += std::max(1e-3, sign * distance(ray.at(t)));
+    if (t >= end) return kInfinity;
+    double a = t - std::max(2e-3, 2 * std::abs(distance(ray.at(t)))), b = t;
+    for (int i = 0; i < 60; ++i) (sign * distance(ray.at((a + b) / 2)) > 0 ? a : b) = (a + b) / 2;
+    return (a + b) / 2;
   };
-  EXPECT_LT(thicknessError(parameters("torus"), exact, 0.5), kTolerance);
+  const double enter = crossing(100, 300, 1);
+  return std::isinf(enter) ? 0.0 : crossing(enter + 1e-6, 300, -1) - enter;
+}
+
+TEST(Scene, ThicknessIsThatOfTheClosedForm) {
+  struct Row {
+    const char* scene;
+    std::map<std::string, double> options;
+    std::function<double(const Ray&)> exact;
+    double smallest;  // thickness away from silhouettes; at them its relative error grows without bound as it
+                      // goes to 0
+  };
+  const Row rows[] = {{"slab", {{"tilt", 0}}, [](const Ray& ray) { return slabThickness(ray, 0, 4); }, 1},
+                      {"slab", {{"tilt", 50}}, [](const Ray& ray) { return slabThickness(ray, 50, 4); }, 1},
+                      {"wedge", {}, wedgeThickness, 0.01},
+                      {"sphere", {{"extent", 18}}, [](const Ray& ray) { return 2 * halfChord(ray, 8); }, 0.5},
+                      {"hollow_sphere",
+                       {{"extent", 18}},
+                       [](const Ray& ray) {
+                         const double outer = halfChord(ray, 8), inner = halfChord(ray, 6);
+                         return inner > 0 ? outer - inner : 2 * outer;
+                       },
+                       0.5},
+                      {"two_sheets", {}, [](const Ray& ray) { return slabThickness(ray, 0, 2); }, 1},
+                      {"torus", {}, torusThickness, 0.5}};
+  for (const Row& row : rows)
+    for (const bool orthographic : {false, true}) {
+      SceneParameters parameters = sized(row.scene, 64);
+      parameters.orthographic = orthographic;
+      parameters.options = row.options;
+      EXPECT_LT(thicknessError(parameters, row.exact, row.smallest), 1e-6)
+          << row.scene << " " << orthographic;
+    }
 }
 
 TEST(Scene, ExactThicknessMatchesTheStoredDepths) {
@@ -191,55 +179,21 @@ TEST(Scene, OverlappingObjectsEndWhereTheirUnionEnds) {
   EXPECT_DOUBLE_EQ(hit->exit, 9);
 }
 
-TEST(Scene, RealRootsOfAProductOfFactors) {
-  const double a = -2, b = 1, c = 3, d = 3.001;
-  const std::vector<double> found =
-      realRoots({a * b * c * d, -(a * b * c + a * b * d + a * c * d + b * c * d),
-                 a * b + a * c + a * d + b * c + b * d + c * d, -(a + b + c + d), 1},
-                -10, 10);
-  ASSERT_EQ(found.size(), 4u);
-  EXPECT_NEAR(found[0], a, 1e-12);
-  EXPECT_NEAR(found[1], b, 1e-12);
-  EXPECT_NEAR(found[2], c, 1e-9);  // two roots 1e-3 apart are 1e3 times as ill-conditioned
-  EXPECT_NEAR(found[3], d, 1e-9);
-}
-
 // ---- Cameras
 
 struct Convention {
   bool orthographic, reversed, infinite;
-  Handedness handedness;
 };
 
-class SceneCamera : public ::testing::TestWithParam<Convention> {};
-INSTANTIATE_TEST_SUITE_P(Conventions, SceneCamera, ::testing::ValuesIn([] {
-                           std::vector<Convention> all;
-                           for (const Handedness handedness : {Handedness::Right, Handedness::Left}) {
-                             for (const bool reversed : {false, true}) {
-                               all.push_back({false, reversed, false, handedness});
-                               all.push_back({false, reversed, true, handedness});
-                               all.push_back({true, reversed, false, handedness});
-                             }
-                           }
-                           return all;
-                         }()),
-                         [](const auto& test) {
-                           const Convention& c = test.param;
-                           return std::string(c.orthographic ? "Orthographic" : "Perspective") +
-                                  (c.reversed ? "Reversed" : "") + (c.infinite ? "Infinite" : "") +
-                                  (c.handedness == Handedness::Left ? "Left" : "Right");
-                         });
-
-TEST_P(SceneCamera, MapsKnownPoints) {
-  const Convention& c = GetParam();
+void expectKnownPoints(const Convention& c, Handedness handedness) {
   const double n = 2;
   const double f = c.infinite ? kInfinity : 50;
-  const double forward = c.handedness == Handedness::Left ? 1 : -1;
+  const double forward = handedness == Handedness::Left ? 1 : -1;
   const double tangent = 0.5;  // half the vertical view
   const double aspect = 1.6;
   const Matrix matrix = c.orthographic
-                            ? orthographic(2 * aspect, 2, {n, f, c.reversed}, c.handedness)
-                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed}, c.handedness);
+                            ? orthographic(2 * aspect, 2, {n, f, c.reversed}, handedness)
+                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed}, handedness);
   const auto project = [&](double x, double y, double viewZ) {
     const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, forward * viewZ, 1);
     EXPECT_GT(clip.w, 0);
@@ -250,35 +204,23 @@ TEST_P(SceneCamera, MapsKnownPoints) {
     const glm::dvec3 corner = project(-top * aspect, top, z);  // upper left as seen
     EXPECT_NEAR(corner.x, -1, 1e-14);
     EXPECT_NEAR(corner.y, -1, 1e-14);  // Vulkan's y points down
-    EXPECT_NEAR(corner.z, deviceDepth(matrix, z, c.handedness), 1e-14);
+    EXPECT_NEAR(corner.z, deviceDepth(matrix, z, handedness), 1e-14);
   }
   EXPECT_NEAR(project(0, 0, n).z, c.reversed ? 1 : 0, 1e-14);
   const double farthest = c.infinite ? 1e12 : f;
   EXPECT_NEAR(project(0, 0, farthest).z, c.reversed ? 0 : 1, 1e-11);
-  EXPECT_EQ(clearDepth(matrix, c.handedness), c.reversed ? 0 : 1);
+  EXPECT_EQ(clearDepth(matrix, handedness), c.reversed ? 0 : 1);
 }
 
-TEST_P(SceneCamera, DeviceDepthHoldsWhatViewZHolds) {
-  const Convention& c = GetParam();
-  SceneParameters parameters = sized("sphere", 32);
-  parameters.orthographic = c.orthographic;
-  parameters.reversedZ = c.reversed;
-  parameters.infiniteFar = c.infinite;
-  parameters.handedness = c.handedness;
-  const Capture viewZ = makeScene(parameters);
-  parameters.depthEncoding = PELLUCID_DEPTH_DEVICE;
-  const Capture device = makeScene(parameters);
-  ASSERT_EQ(device.frontDepth.encoding, PELLUCID_DEPTH_DEVICE);
-  ASSERT_EQ(device.clipFromView, viewZ.clipFromView);
-  // Depth falls off as near * viewZ rounded to float / viewZ^2 at most, or span^-1 when parallel.
-  const double slack = 2 * std::ldexp(1, -24);
-  for (std::size_t i = 0; i < viewZ.material.size(); ++i) {
-    const float stored = device.frontDepth.image.data[i];
-    if (viewZ.material[i] == 0)
-      EXPECT_EQ(stored, c.reversed ? 0.0f : 1.0f);
-    else
-      EXPECT_NEAR(stored, deviceDepth(viewZ.clipFromView, viewZ.frontDepth.image.data[i], c.handedness), slack);
-  }
+TEST(Scene, CamerasMapKnownPointsInEveryConvention) {
+  for (const Handedness handedness : {Handedness::Right, Handedness::Left})
+    for (const bool reversed : {false, true})
+      for (const auto& [parallel, infinite] : {std::pair(false, false), {false, true}, {true, false}}) {
+        SCOPED_TRACE(testing::Message()
+                     << (handedness == Handedness::Left ? "left" : "right") << ", reversed " << reversed
+                     << ", orthographic " << parallel << ", infinite " << infinite);
+        expectKnownPoints({parallel, reversed, infinite}, handedness);
+      }
 }
 
 // World position of a pixel through the capture's own matrices, as a replay would find it.
@@ -584,57 +526,48 @@ TEST(Scene, SameParametersSameBits) {
   EXPECT_NE(a.frontDepth.image.data, makeScene(parameters).frontDepth.image.data);
 }
 
-// What the frames of a head scan cover, at 16:9: the bench's stand-ins are as full and as empty.
-TEST(Scene, HeadsCoverAsMuchAsThoseOfAScan) {
-  const double covered[] = {0.139, 0.947, 0.056, 0.003};
-  for (int view = 0; view < 4; ++view) {
-    SceneParameters parameters = sized("head", 90);
-    parameters.width = 160;
-    parameters.shadowSize = 0;
-    parameters.options = {{"view", view}};
-    const Capture capture = makeScene(parameters);
-    const auto none = std::count(capture.material.begin(), capture.material.end(), 0);
-    // A twentieth, and half a row of pixels along the silhouette of one far away.
-    EXPECT_NEAR(1 - static_cast<double>(none) / (160 * 90), covered[view], 0.05 * covered[view] + 5e-4)
-        << view;
-  }
-}
-
 // ---- Errors
 
-std::string messageOf(const SceneParameters& parameters) {
-  return pellucid::test::refusalOf([&] { makeScene(parameters); });
-}
-
 TEST(Scene, ErrorsNameFieldAndValue) {
-  EXPECT_NE(messageOf(sized("eer", 8)).find("no scene \"eer\"; there are ear, "), std::string::npos);
-  SceneParameters parameters = sized("slab", 8);
-  parameters.options = {{"thicknes", 1}};
-  EXPECT_NE(messageOf(parameters).find("no option \"thicknes\"; it has thickness, tilt"), std::string::npos);
-  for (const double value : {-1.0, std::nan("")}) {
-    parameters.options = {{"thickness", value}};
-    EXPECT_NE(messageOf(parameters).find("option thickness = "), std::string::npos);
+  struct Row {
+    const char* words;
+    void (*change)(SceneParameters&);
+  };
+  const Row rows[] = {
+      {"no scene \"eer\"", [](SceneParameters& p) { p.name = "eer"; }},
+      {"no option \"thicknes\"",
+       [](SceneParameters& p) {
+         p.options = {{"thicknes", 1}};
+       }},
+      {"option thickness = -1",
+       [](SceneParameters& p) {
+         p.options = {{"thickness", -1}};
+       }},
+      {"option thickness = nan",
+       [](SceneParameters& p) {
+         p.options = {{"thickness", std::nan("")}};
+       }},
+      {"width: 0", [](SceneParameters& p) { p.width = 0; }},
+      {"width: 100000", [](SceneParameters& p) { p.width = 100000; }},
+      {"shadowSize: -1", [](SceneParameters& p) { p.shadowSize = -1; }},
+      {"infiniteFar",
+       [](SceneParameters& p) {
+         p.infiniteFar = true;
+         p.orthographic = true;
+       }},
+      {"depthEncoding", [](SceneParameters& p) { p.depthEncoding = PELLUCID_DEPTH_DISTANCE; }},
+      {"scene \"sphere\": its light", [](SceneParameters& p) {
+         p.name = "sphere";
+         p.shadowSize = 8;
+         p.lightType = PELLUCID_LIGHT_POINT;
+         p.options = {{"radius", 1e4}};
+       }}};
+  for (const Row& row : rows) {
+    SceneParameters parameters = sized("slab", 8);
+    row.change(parameters);
+    const std::string refusal = pellucid::test::refusalOf([&] { makeScene(parameters); });
+    EXPECT_NE(refusal.find(row.words), std::string::npos) << refusal;
   }
-  parameters.options.clear();
-  parameters.width = 0;
-  EXPECT_NE(messageOf(parameters).find("width: 0 is outside 1"), std::string::npos);
-  parameters.width = 100000;
-  EXPECT_NE(messageOf(parameters).find("width: 100000"), std::string::npos);
-  parameters.width = 8;
-  parameters.shadowSize = -1;
-  EXPECT_NE(messageOf(parameters).find("shadowSize: -1"), std::string::npos);
-  parameters.shadowSize = 0;
-  parameters.infiniteFar = true;
-  parameters.orthographic = true;
-  EXPECT_NE(messageOf(parameters).find("infiniteFar"), std::string::npos);
-  parameters.orthographic = false;
-  parameters.depthEncoding = PELLUCID_DEPTH_DISTANCE;
-  EXPECT_NE(messageOf(parameters).find("depthEncoding"), std::string::npos);
-  parameters = sized("sphere", 8);
-  parameters.shadowSize = 8;
-  parameters.lightType = PELLUCID_LIGHT_POINT;
-  parameters.options = {{"radius", 1e4}};
-  EXPECT_NE(messageOf(parameters).find("scene \"sphere\": its light"), std::string::npos);
 }
 
 TEST(Scene, CamerasRefuseWhatHasNoProjection) {
@@ -649,11 +582,6 @@ TEST(Scene, CamerasRefuseWhatHasNoProjection) {
 
 // ---- Turntables
 
-Vector3 eyeOf(const Capture& capture) {
-  const glm::dmat4 view = toGlm(capture.viewFromWorld);
-  return fromGlm(-(glm::transpose(glm::dmat3(view)) * glm::dvec3(view[3])));
-}
-
 TEST(SceneTurn, CarriesCameraAndLightsRoundCounterclockwise) {
   SceneParameters parameters = sized("sphere", 8);
   parameters.lightType = PELLUCID_LIGHT_POINT;
@@ -661,7 +589,8 @@ TEST(SceneTurn, CarriesCameraAndLightsRoundCounterclockwise) {
   parameters.turn = {std::numbers::pi / 2, std::numbers::pi};
   const Capture turned = makeScene(parameters);
   // From above +z goes to +x.
-  const Vector3 from = eyeOf(still), to = eyeOf(turned);
+  const auto eyeOf = [](const Capture& c) { return glm::dvec3(glm::inverse(toGlm(c.viewFromWorld))[3]); };
+  const glm::dvec3 from = eyeOf(still), to = eyeOf(turned);
   EXPECT_NEAR(to[0], from[2], 1e-9);
   EXPECT_NEAR(to[2], -from[0], 1e-9);
   EXPECT_GT(from[2], 100);

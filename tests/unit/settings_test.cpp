@@ -34,12 +34,6 @@ TEST(Settings, PolynomialsAreThoseOfTheThesis) {
   EXPECT_GT(value("quadratic", 2.16), 0);
 }
 
-TEST(Settings, LaterPolynomialsWin) {
-  SettingsOptions options;
-  options.set = {"polynomial=cubic", "polynomial=.1,.2,.3,.4"};
-  EXPECT_EQ(options.parse().translucency.anglePolynomial, (std::array<float, 4>{0.1f, 0.2f, 0.3f, 0.4f}));
-}
-
 TEST(Settings, DebugViewsAreTheirNames) {
   const std::pair<const char*, PellucidDebugView> views[] = {{"thickness", PELLUCID_DEBUG_THICKNESS},
                                                              {"transmittance", PELLUCID_DEBUG_TRANSMITTANCE},

@@ -99,6 +99,13 @@ TEST(Statistics, OfNothingAreZero) {
     EXPECT_EQ(groups->run, 0u);
     EXPECT_GT(groups->most, 0u);
   }
+  Frame idle(0);
+  idle.frame.options.features = 0;
+  Slice none{idle};
+  ASSERT_EQ(none.plan.dispatchCount, 0u);
+  ASSERT_EQ(none.read(), PELLUCID_OK) << none.sentences;
+  EXPECT_EQ(none.statistics.dispatchCount, 0u);
+  expectGroups(none.statistics.blocks, 0, 0, "blocks");
 }
 
 // Blocks lie at multiples of 64, wherever the rect begins.
@@ -127,63 +134,49 @@ TEST(Statistics, WithoutListsAllRuns) {
   EXPECT_EQ(s.statistics.lists, 0u);
 }
 
-TEST(Statistics, OfAPlanOfNothingAreEmpty) {
-  Frame f(0);
-  f.frame.options.features = 0;
-  Slice s{f};
-  ASSERT_EQ(s.plan.dispatchCount, 0u);
-  ASSERT_EQ(s.read(), PELLUCID_OK) << s.sentences;
-  EXPECT_EQ(s.statistics.dispatchCount, 0u);
-  expectGroups(s.statistics.blocks, 0, 0, "blocks");
-}
-
 TEST(Statistics, ErrorsNameFieldAndValue) {
   const Slice whole{Gathered()};
   struct Case {
     std::function<void(Slice&)> change;
     PellucidResult result;
-    std::string sentence;
+    std::string words;
   };
-  const std::string bytes = std::to_string(whole.plan.constantsSize);
+  const auto setSize = [](size_t size) {
+    return [size](Slice& s) { s.statistics.structSize = static_cast<uint32_t>(size); };
+  };
+  const PellucidResult invalid = PELLUCID_ERROR_INVALID_ARGUMENT, version = PELLUCID_ERROR_VERSION;
   const Case cases[] = {
-      {[](Slice& s) { s.constants.mapped = nullptr; }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "constants.mapped is NULL"},
+      {[](Slice& s) { s.constants.mapped = nullptr; }, invalid, "constants.mapped is NULL"},
       {[](Slice& s) { --s.constants.size; }, PELLUCID_ERROR_BUFFER_TOO_SMALL,
-       "constants.size is " + std::to_string(whole.plan.constantsSize - 1) + "; the plan has " + bytes},
-      {[](Slice& s) { s.run(s.indexOf("diffuse"), 9); }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "constants.mapped has 9 x 1 x 1 groups of \"diffuse\", which are at most 8 x "},
-      {[](Slice& s) { s.run(s.indexOf("entry points"), 1, 2, 1); }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "constants.mapped has 1 x 2 x 1 groups of \"entry points\""},
+       "constants.size is " + std::to_string(whole.plan.constantsSize - 1)},
+      {[](Slice& s) { s.run(s.indexOf("diffuse"), 9); }, invalid, "constants.mapped has 9 x 1 x 1 groups"},
+      {[](Slice& s) { s.run(s.indexOf("entry points"), 1, 2, 1); }, invalid,
+       "constants.mapped has 1 x 2 x 1 groups"},
       {[](Slice& s) {
          s.plan.dispatches[s.indexOf("diffuse")].indirectOffset =
              static_cast<uint32_t>(s.plan.constantsSize - 8);
        },
-       PELLUCID_ERROR_INVALID_ARGUMENT,
-       "].indirectOffset is " + std::to_string(whole.plan.constantsSize - 8)},
-      {[](Slice& s) { s.plan.dispatchCount = PELLUCID_MAX_DISPATCHES + 1; }, PELLUCID_ERROR_INVALID_ARGUMENT,
-       "plan.dispatchCount is 33, more than 32"},
-      {[](Slice& s) { s.statistics.structSize = 0; }, PELLUCID_ERROR_VERSION,
-       "statistics.structSize is 0; this library writes " + std::to_string(sizeof(PellucidStatistics))},
-      {[](Slice& s) { s.statistics.structSize -= 8; }, PELLUCID_ERROR_VERSION, "statistics.structSize is "},
-      {[](Slice& s) { s.statistics.structSize += 4; }, PELLUCID_ERROR_VERSION, "statistics.structSize is "},
-      {[](Slice& s) { s.statistics.structSize = 4104; }, PELLUCID_ERROR_VERSION, "is 4104"}};
+       invalid, "].indirectOffset is " + std::to_string(whole.plan.constantsSize - 8)},
+      {[](Slice& s) { s.plan.dispatchCount = PELLUCID_MAX_DISPATCHES + 1; }, invalid,
+       "plan.dispatchCount is 33"},
+      {setSize(0), version, "statistics.structSize is 0"},
+      {setSize(sizeof(PellucidStatistics) - 8), version, "statistics.structSize is "},
+      {setSize(sizeof(PellucidStatistics) + 4), version, "statistics.structSize is "},
+      {setSize(4104), version, "statistics.structSize is 4104"}};
   for (const Case& c : cases) {
     Slice s{Gathered()};
     c.change(s);
     s.statistics.blocks.run = 77;
-    EXPECT_EQ(s.read(), c.result) << c.sentence;
-    EXPECT_NE(s.sentences.find(c.sentence), std::string::npos) << s.sentences << "is not " << c.sentence;
-    EXPECT_EQ(s.statistics.blocks.run, 77u) << c.sentence << ": written all the same";
+    EXPECT_EQ(s.read(), c.result) << c.words;
+    EXPECT_NE(s.sentences.find(c.words), std::string::npos) << s.sentences << "is not " << c.words;
+    EXPECT_EQ(s.statistics.blocks.run, 77u) << c.words << ": written all the same";
     // A caller need not listen.
     EXPECT_EQ(pellucidReadStatistics(&s.plan, &s.constants, &s.statistics, nullptr, nullptr), c.result);
   }
   Slice s{Gathered()};
-  EXPECT_EQ(pellucidReadStatistics(nullptr, &s.constants, &s.statistics, nullptr, nullptr),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidReadStatistics(&s.plan, nullptr, &s.statistics, nullptr, nullptr),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidReadStatistics(&s.plan, &s.constants, nullptr, nullptr, nullptr),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(pellucidReadStatistics(nullptr, &s.constants, &s.statistics, nullptr, nullptr), invalid);
+  EXPECT_EQ(pellucidReadStatistics(&s.plan, nullptr, &s.statistics, nullptr, nullptr), invalid);
+  EXPECT_EQ(pellucidReadStatistics(&s.plan, &s.constants, nullptr, nullptr, nullptr), invalid);
 }
 
 // A newer caller's fields become 0, and its size stays.

@@ -86,41 +86,36 @@ struct Unusual : Frame {
   }
 };
 
-TEST(StructSize, FrameCutShortHasDefaults) {
-  const Unusual whole;
+// What a caller of this header gets who sets the fields before the cut. `frameOf` gives the frame that has
+// the struct.
+template <class Struct, class FrameOf>
+void expectDefaultsBeyond(const Struct& whole, size_t least, void (*init)(Struct*), const FrameOf& frameOf) {
   std::set<std::string> results;
-  for (size_t size = kLeastFrame; size <= sizeof(PellucidFrame); size += alignof(PellucidFrame)) {
-    // What a caller of this header gets who sets the fields before the cut.
-    PellucidFrame expected;
-    pellucidInitFrame(&expected);
-    std::memcpy(&expected, &whole.frame, size);
+  for (size_t size = least; size <= sizeof(Struct); size += alignof(Struct)) {
+    Struct expected;
+    init(&expected);
+    std::memcpy(static_cast<void*>(&expected), &whole, size);
     expected.structSize = sizeof expected;
-    Sized<PellucidFrame> cut(whole.frame, size);
-    results.insert(resultOf(expected));
-    EXPECT_EQ(resultOf(*cut.get()), resultOf(expected)) << size;
-    EXPECT_EQ(errorsOf(*cut.get()), errorsOf(expected)) << size;
+    Sized<Struct> cut(whole, size);
+    const std::string result = resultOf(frameOf(&expected)), errors = errorsOf(frameOf(&expected));
+    results.insert(result);
+    EXPECT_EQ(resultOf(frameOf(cut.get())), result) << size;
+    EXPECT_EQ(errorsOf(frameOf(cut.get())), errors) << size;
   }
   EXPECT_GT(results.size(), 3u) << "the fields that are cut off decide nothing";
 }
 
-TEST(StructSize, ThesisOptionsCutShortHaveDefaults) {
+TEST(StructSize, StructsCutShortHaveDefaults) {
   Unusual f;
-  std::set<std::string> results;
-  for (size_t size = kLeastThesis; size <= sizeof(PellucidThesisOptions);
-       size += alignof(PellucidThesisOptions)) {
-    PellucidThesisOptions expected;
-    pellucidInitThesisOptions(&expected);
-    std::memcpy(&expected, &f.thesis, size);
-    expected.structSize = sizeof expected;
-    Sized<PellucidThesisOptions> cut(f.thesis, size);
-    f.frame.options.thesis = &expected;
-    const std::string result = resultOf(f.frame);
-    results.insert(result);
-    f.frame.options.thesis = cut.get();
-    EXPECT_EQ(resultOf(f.frame), result) << size;
-    f.frame.options.thesis = &f.thesis;
-  }
-  EXPECT_GT(results.size(), 3u) << "the fields that are cut off decide nothing";
+  expectDefaultsBeyond<PellucidFrame>(
+      f.frame, kLeastFrame, [](PellucidFrame* p) { pellucidInitFrame(p); },
+      [](PellucidFrame* frame) -> const PellucidFrame& { return *frame; });
+  expectDefaultsBeyond<PellucidThesisOptions>(
+      f.thesis, kLeastThesis, [](PellucidThesisOptions* p) { pellucidInitThesisOptions(p); },
+      [&](PellucidThesisOptions* thesis) -> const PellucidFrame& {
+        f.frame.options.thesis = thesis;
+        return f.frame;
+      });
 }
 
 TEST(StructSize, NoThesisOptionsAreTheirDefaults) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <ostream>
 
 #include "frame_fixture.h"
 #include "null_device.h"
@@ -146,29 +145,6 @@ TEST_F(Views, ShareBarriersAndKeepTheOrderOfEachPlan) {
   EXPECT_GE(lengths.size(), 4u) << "the plans are too much alike for this test";
 }
 
-// Dispatches of equal plans alternate between barriers: all of one view, then all of the next.
-TEST_F(Views, EqualPlansRunSideBySide) {
-  const View views[] = {{0, wholeFrame}, {1, wholeFrame}};
-  NullCommands commands = commandsFor(2);
-  ASSERT_EQ(record(commands, {views[0].get(), views[1].get()}), PELLUCID_OK) << said_;
-  size_t at = 0;
-  const PellucidPlan& plan = views[0].plan;
-  for (uint32_t i = 0; i < plan.dispatchCount;) {
-    uint32_t end = i + 1;
-    while (end < plan.dispatchCount && !plan.dispatches[end].barrierBefore) ++end;
-    if (plan.dispatches[i].barrierBefore) {
-      EXPECT_TRUE(commands.commands[at++].barrier);
-    }
-    for (const uint64_t view : {0u, 1u})
-      for (uint32_t k = i; k < end; ++k, ++at) {
-        ASSERT_FALSE(commands.commands[at].barrier) << at;
-        EXPECT_EQ((number(commands.commands[at].image) - 1) / View::kImages, view) << at;
-      }
-    i = end;
-  }
-  EXPECT_EQ(at, commands.commands.size());
-}
-
 TEST_F(Views, OneIsARecordingOfItsPlan) {
   for (void (*kind)(Frame&) : kKinds) {
     View view(0, kind);
@@ -206,9 +182,6 @@ struct Refusal {
   const char* words;
   PellucidResult result = PELLUCID_ERROR_INVALID_ARGUMENT;
 };
-
-// GoogleTest would print the bytes.
-void PrintTo(const Refusal& value, std::ostream* out) { *out << value.name; }
 
 void halves(View& a, View& b) {
   const uint32_t left[4] = {0, 0, 50, 50}, right[4] = {50, 0, 50, 50};
@@ -270,20 +243,18 @@ const Refusal kRefusals[] = {
      PELLUCID_ERROR_VERSION},
     {"NoView", [](View&, View& b, auto&) { b.f.frame.material = {}; }, "views[1].material has no view"}};
 
-class ViewRefusals : public Views, public testing::WithParamInterface<Refusal> {};
-
-TEST_P(ViewRefusals, NamesTheViewAndRecordsNothing) {
-  View a(0, wholeFrame), b(1, wholeFrame);
-  PellucidView views[] = {a.get(), b.get()};
-  GetParam().change(a, b, views);
-  NullCommands commands = commandsFor(2);
-  EXPECT_EQ(record(commands, {views[0], views[1]}), GetParam().result);
-  EXPECT_TRUE(said_.starts_with(GetParam().words)) << said_;
-  EXPECT_TRUE(commands.commands.empty());
+TEST_F(Views, RefusalsNameTheViewAndRecordNothing) {
+  for (const Refusal& refusal : kRefusals) {
+    SCOPED_TRACE(refusal.name);
+    View a(0, wholeFrame), b(1, wholeFrame);
+    PellucidView views[] = {a.get(), b.get()};
+    refusal.change(a, b, views);
+    NullCommands commands = commandsFor(2);
+    EXPECT_EQ(record(commands, {views[0], views[1]}), refusal.result);
+    EXPECT_TRUE(said_.starts_with(refusal.words)) << said_;
+    EXPECT_TRUE(commands.commands.empty());
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(, ViewRefusals, testing::ValuesIn(kRefusals),
-                         [](const auto& test) { return std::string(test.param.name); });
 
 // ---- What views may share
 

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "reference/path_tracer/cone.h"
-#include "reference/sampling.h"
+#include "reference/path_tracer/sampling.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "reference/path_tracer/random.h"
+#include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/trace_scene.h"
 #include "scene/environment.h"
 

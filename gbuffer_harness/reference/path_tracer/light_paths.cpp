@@ -7,10 +7,9 @@
 #include "common/error.h"
 #include "common/parallel.h"
 #include "reference/camera.h"
-#include "reference/path_tracer/cone.h"
+#include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/emitters.h"
 #include "reference/path_tracer/walk.h"
-#include "reference/sampling.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 

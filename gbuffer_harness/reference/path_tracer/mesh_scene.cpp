@@ -36,6 +36,20 @@ struct Triangle {
   bool doubleSided;
 };
 
+RTCRay embreeRay(const Ray& ray, double from, double limit) {
+  RTCRay result = {};
+  result.org_x = static_cast<float>(ray.origin.x);
+  result.org_y = static_cast<float>(ray.origin.y);
+  result.org_z = static_cast<float>(ray.origin.z);
+  result.dir_x = static_cast<float>(ray.direction.x);
+  result.dir_y = static_cast<float>(ray.direction.y);
+  result.dir_z = static_cast<float>(ray.direction.z);
+  result.tnear = static_cast<float>(from);
+  result.tfar = static_cast<float>(limit);
+  result.mask = ~0u;
+  return result;
+}
+
 // Triangles of one scene of Embree's, by its primitive numbers.
 struct TriangleScene {
   EmbreeScene scene;
@@ -44,15 +58,7 @@ struct TriangleScene {
 
   std::optional<RTCRayHit> hit(const Ray& ray, double from, double limit) const {
     RTCRayHit query = {};
-    query.ray.org_x = static_cast<float>(ray.origin.x);
-    query.ray.org_y = static_cast<float>(ray.origin.y);
-    query.ray.org_z = static_cast<float>(ray.origin.z);
-    query.ray.dir_x = static_cast<float>(ray.direction.x);
-    query.ray.dir_y = static_cast<float>(ray.direction.y);
-    query.ray.dir_z = static_cast<float>(ray.direction.z);
-    query.ray.tnear = static_cast<float>(from);
-    query.ray.tfar = static_cast<float>(limit);
-    query.ray.mask = ~0u;
+    query.ray = embreeRay(ray, from, limit);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -141,15 +147,7 @@ public:
   }
 
   bool occluded(const Ray& ray, double distance) const override {
-    RTCRay query = {};
-    query.org_x = static_cast<float>(ray.origin.x);
-    query.org_y = static_cast<float>(ray.origin.y);
-    query.org_z = static_cast<float>(ray.origin.z);
-    query.dir_x = static_cast<float>(ray.direction.x);
-    query.dir_y = static_cast<float>(ray.direction.y);
-    query.dir_z = static_cast<float>(ray.direction.z);
-    query.tfar = static_cast<float>(std::min<double>(distance, std::numeric_limits<float>::max()));
-    query.mask = ~0u;
+    RTCRay query = embreeRay(ray, 0, std::min<double>(distance, std::numeric_limits<float>::max()));
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(all_.scene.get(), &context, &query);

@@ -67,7 +67,7 @@ private:
 std::unique_ptr<TraceScene> makeSolidScene(const SceneModel& model);
 
 // A triangle mesh, with rays by Embree. Parts of one object are one body; a part's own surface says its
-// material. Bodies with a material must be closed (raster/close_mesh.h). A hit from the wrong side does not
+// material. Bodies with a material must be closed (raster/bodies.h). A hit from the wrong side does not
 // end a way through a body: what another translucent body, or a fold of the same one, encloses is medium,
 // too. Faces are culled as the rasterizer does: first() passes back faces unless their surface is
 // double-sided. All of the model is copied.

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "reference/boundary.h"
-#include "reference/sampling.h"
+#include "reference/path_tracer/sampling.h"
 
 namespace pellucid::harness::reference {
 

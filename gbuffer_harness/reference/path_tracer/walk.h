@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "reference/path_tracer/medium.h"
-#include "reference/path_tracer/random.h"
+#include "reference/path_tracer/sampling.h"
 #include "reference/path_tracer/trace_scene.h"
 
 namespace pellucid::harness::reference {

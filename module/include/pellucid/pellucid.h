@@ -1,23 +1,27 @@
 /* Pellucid: screen-space translucency and subsurface diffusion as Vulkan compute dispatches.
  *
- * This header is what an engine needs to ship: a context of pipelines, a frame with its lights and shadow maps, and
- * three calls a frame: pellucidBuildPlan, pellucidWriteConstants, pellucidRecordPlan. Everything else has a default in the
- * `options` of a struct (pellucid_options.h). pellucid_material.h makes materials. Further headers are included by those who
- * need them: pellucid_plan.h (recording a plan yourself), pellucid_views.h (several views at once), pellucid_statistics.h
- * (what the device decided), pellucid_thesis.h (options of Whelan 2009).
+ * An engine needs this header alone. The header has a context of pipelines, a frame with lights and shadow maps, and three calls a
+ * frame: pellucidBuildPlan, pellucidWriteConstants, pellucidRecordPlan. All other settings have defaults in the `options` of a
+ * struct (pellucid_options.h). pellucid_material.h makes materials. Other headers are for further work:
+ * - pellucid_plan.h: record a plan yourself. pellucid.h includes it, but most engines need not read it.
+ * - pellucid_views.h: record several views at once.
+ * - pellucid_statistics.h: read the decisions of the device.
+ * - pellucid_thesis.h: options of Whelan 2009.
  *
- * C ABI, Vulkan headers only. The caller owns every Vulkan object: the module creates pipelines and layouts and records
- * commands. It allocates no device memory, changes no image layout, submits nothing and waits for nothing.
+ * C ABI, Vulkan headers only. The caller owns images, buffers and command buffers. The module creates pipelines and layouts, and
+ * records commands. The module allocates no device memory, changes no image layout, submits nothing and waits for nothing.
  *
  * Conventions, unless a field says otherwise:
  * - matrices: 16 floats, column-major, column vectors (GLM and Vulkan memory order);
- * - clip space: Vulkan, x right, y down, depth 0..1; near and far in any order, infinite, perspective or orthographic,
- *   either handedness: everything is read from the matrix;
- * - lengths: scene units of `metersPerUnit` meters; of materials mm;
+ * - clip space: Vulkan's, x right, y down, depth 0..1. The matrix says everything else: reversed or infinite depth, perspective
+ *   or orthographic, handedness;
+ * - lengths: scene units of `metersPerUnit` meters. Lengths of materials: mm;
  * - colors: linear, scene-referred, R, G, B;
- * - a zero-initialized optional field has its default; pellucidInit* writes the other defaults;
- * - a struct with a `structSize` ends with its options and may grow there: fields that a caller's older struct lacks have their
- *   defaults, and a newer one's further bytes, up to 4096 in all, must be 0.
+ * - ranges: colors and intensities 0..1e15, other scene values -1e15..1e15;
+ * - defaults: 0 where a comment says "0 (default)". pellucidInit* writes all defaults;
+ * - errors: a function that returns PellucidResult can return the errors in its comment. Codes stand without PELLUCID_ERROR_;
+ * - sizes: a struct with a `structSize` may grow at its end. Missing fields of an older struct have their defaults. Further bytes of
+ *   a newer struct must be 0, and the struct has at most 4096 bytes.
  */
 #ifndef PELLUCID_H
 #define PELLUCID_H
@@ -30,217 +34,259 @@
 extern "C" {
 #endif
 
-#define PELLUCID_VERSION "0.3.0"   /* of the release */
-#define PELLUCID_HEADER_VERSION 6u /* the library refuses a header of another version */
+/* Version of the release. */
+#define PELLUCID_VERSION "0.3.0"
+/* Version of the headers. The library refuses headers of another version. */
+#define PELLUCID_HEADER_VERSION 6u
 
 /* ---- Context: the pipelines of one device ----------------------------------------------------- */
 
+/* The pipelines and layouts of one device. */
 typedef struct PellucidContext PellucidContext;
 
+/* Description of a context. */
 typedef struct PellucidContextDesc {
-  /* sizeof(PellucidContextDesc) and PELLUCID_HEADER_VERSION, by pellucidInitContextDesc. */
+  /* sizeof(PellucidContextDesc) and PELLUCID_HEADER_VERSION. pellucidInitContextDesc writes both. */
   uint32_t structSize, headerVersion;
-  /* VkApplicationInfo::apiVersion in use, >= VK_API_VERSION_1_1; default 1.1. */
+  /* VkApplicationInfo::apiVersion of the instance, at least VK_API_VERSION_1_1; default 1.1. */
   uint32_t apiVersion;
+  /* Required. */
   VkInstance instance;
+  /* Required. */
   VkPhysicalDevice physicalDevice;
-  /* With VK_KHR_push_descriptor enabled, or pushDescriptor of Vulkan 1.4, or else options.descriptorPools. */
+  /* Required. The device has VK_KHR_push_descriptor or Vulkan 1.4's pushDescriptor enabled. Other devices need
+   * options.descriptorPools. */
   VkDevice device;
-  /* All Vulkan functions come from here. */
+  /* Required. The module gets all Vulkan functions from this function. */
   PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  /* Called with each error of a context or recording; optional. */
+  /* Optional. It is called with each error of the context and of recordings. */
   PellucidMessageFn message;
+  /* First argument of `message`. */
   void* messageUser;
+  /* pellucidInitContextDesc writes the defaults. */
   PellucidContextOptions options;
 } PellucidContextDesc;
 
+/* Writes the defaults into a description of structSize bytes. */
 PELLUCID_API void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize);
 /* Writes the defaults. */
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
-/* Checks the device's limits and makes pipelines. Any thread may use the context. On failure *context is NULL. Errors: VERSION,
- * INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
+/* Checks the device's limits and makes pipelines. Any thread may use the context. On failure *context is NULL.
+ * Errors: VERSION, INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
-/* The device must have finished with commands recorded through the context. NULL is allowed. */
+/* Destroys a context. The device must have finished all commands that the context recorded. NULL is allowed. */
 PELLUCID_API void pellucidDestroyContext(PellucidContext* context);
 
 /* ---- Lights and shadow maps --------------------------------------------------------------------- */
 
-/* Types, names and units are those of KHR_lights_punctual. */
+/* Types of lights, with the names and units of KHR_lights_punctual. */
 typedef enum PellucidLightType {
   PELLUCID_LIGHT_DIRECTIONAL = 0,
   PELLUCID_LIGHT_POINT = 1,
   PELLUCID_LIGHT_SPOT = 2
 } PellucidLightType;
 
+/* A light. */
 typedef struct PellucidLight {
   /* PellucidLightType. */
   uint32_t type;
-  /* World; of point and spot lights. */
+  /* World space. Only point and spot lights have a position. */
   float position[3];
-  /* World, in which light travels, any length > 0; of directional and spot lights. */
+  /* World-space direction in which the light travels, of any length above 0. Directional and spot lights need it, and lights with an
+   * angleTable. */
   float direction[3];
-  /* >= 0. */
+  /* Factor of the intensity for R, G, B, 0..1e15. */
   float color[3];
-  /* Irradiance at normal incidence of a directional light; else I of E = I cos/r^2, with r in scene units. >= 0. */
+  /* 0..1e15. Directional light: the irradiance at normal incidence. Point and spot light: I, where E = I cos(theta)/r^2 is the irradiance
+   * at the angle of incidence theta and the distance r in scene units. */
   float intensity;
-  /* Of point and spot lights, scene units: the light has the factor max(0, 1 - (r / range)^4); 0 (default): none. */
+  /* Scene units, 0..1e15. Point and spot lights have the factor max(0, 1 - (r / range)^4) at the distance r. 0 (default): no factor. */
   float range;
-  /* Radians from the axis of a spot, 0 <= inner < outer <= pi/2. */
+  /* Angles from a spot light's axis in radians, 0 <= inner < outer <= pi/2. The light is full inside of the inner angle and ends at the
+   * outer angle. */
   float innerConeAngle, outerConeAngle;
-  /* Of frame.shadowMaps, at most PELLUCID_MAX_LIGHT_SHADOW_MAPS: 6 for a cube, n for cascades. The first map that contains a
-   * receiver is used. 0 maps: nothing shadows the light, and thickness is the camera's. */
+  /* The light's range of frame.shadowMaps, at most PELLUCID_MAX_LIGHT_SHADOW_MAPS: 6 for a cube, n for n cascades. A receiver takes the
+   * first map that contains it. 0 maps: nothing shadows the light, and the thickness is the camera-space thickness. */
   uint32_t firstShadowMap, shadowMapCount;
-  /* Own falloff of point and spot lights: indices into options.lightTables plus 1, of the factor by the angle from `direction`
-   * and of the factor by distance. 0 (default): none. */
+  /* Falloff of point and spot lights: indices into options.lightTables plus 1; 0 (default): no table. angleTable has factors by the angle
+   * from `direction`. distanceTable has factors by distance. */
   uint32_t angleTable, distanceTable;
 } PellucidLight;
 
+/* Most shadow maps of a light. */
 enum { PELLUCID_MAX_LIGHT_SHADOW_MAPS = 8 };
 
 /* Content of a depth image. */
 typedef enum PellucidDepthEncoding {
-  /* The 0..1 value of the matrix that rendered it. Camera depths hold no surface beyond 0..1, at NaN, and 1e9 or more away. */
+  /* Clip z / w of the matrix that rendered the depth, 0..1. A camera's depth image has no surface at values outside 0..1, at NaN, and at
+   * 1e9 scene units or more. */
   PELLUCID_DEPTH_DEVICE = 0,
-  /* Positive planar distance in front of the eye, scene units; <= 0, >= 1e9, infinity and NaN hold nothing. */
+  /* Planar distance in front of the eye, scene units, above 0. Values <= 0, values >= 1e9 and NaN: no surface. */
   PELLUCID_DEPTH_VIEW_Z = 1,
-  /* Distance from the light, scene units; of shadow maps only. */
+  /* Distance from the light, scene units. Only shadow maps can have this encoding. */
   PELLUCID_DEPTH_DISTANCE = 2
 } PellucidDepthEncoding;
 
-/* A light's shadow map as the engine drew it; its options hold biases, atlas tiles and exit depth. */
+/* A light's shadow map as the engine drew it. Biases, atlas tiles and exit depth are in `options`. */
 typedef struct PellucidShadowMap {
-  uint32_t image;     /* index into frame.shadowImages */
-  uint32_t extent[2]; /* texels, 1..65536 */
-  uint32_t encoding;  /* PellucidDepthEncoding */
-  /* Clip (-1, -1) is the outer corner of the map's first texel, and (1, 1) that of its last. */
+  /* Index into frame.shadowImages. */
+  uint32_t image;
+  /* Width and height in texels, 1..65536. */
+  uint32_t extent[2];
+  /* PellucidDepthEncoding; default DEVICE. */
+  uint32_t encoding;
+  /* The matrix that drew the map, invertible. Clip (-1, -1) is the outer corner of the map's first texel. Clip (1, 1) is the outer corner
+   * of the last texel. */
   float clipFromWorld[16];
+  /* Zeros give the defaults. */
   PellucidShadowMapOptions options;
 } PellucidShadowMap;
 
 /* ---- Frame --------------------------------------------------------------------------------------- */
 
+/* Most transients of a frame. */
 enum { PELLUCID_MAX_TRANSIENTS = 8 };
 
-/* All that one recording reads and writes. */
+/* Input and output of one recording. */
 typedef struct PellucidFrame {
-  /* sizeof(PellucidFrame), by pellucidInitFrame. */
+  /* sizeof(PellucidFrame). pellucidInitFrame writes it. */
   uint32_t structSize;
-  /* Pixels of every screen-sized image, 1..65536. */
+  /* Width and height in pixels of every screen-sized image, 1..65536. */
   uint32_t imageExtent[2];
-  /* Default 1. */
+  /* Meters of a scene unit, 1e-9..1e9; default 1. */
   float metersPerUnit;
-  /* The projection that rendered the depths, jitter included. */
+  /* The projection that rendered the depths, with its jitter. */
   float clipFromView[16];
-  /* Rigid; default identity. docs/integration.md, "Far from the origin". */
+  /* The camera's view matrix: a rotation and a translation; default identity. docs/integration.md, "Far from the origin". */
   float viewFromWorld[16];
-  /* The irradiance image holds E times this, and so does the output; lights keep their units. 1e-9..1e9; default 1. It is the product
-   * of 1 / pi for an image of E / pi, 1 - F at normal incidence for one whose lights lose F, and the exposure. */
+  /* Factor of the irradiance E in `irradiance` and `output`, 1e-9..1e9; default 1. Lights do not have the factor. preExposure is
+   * the product of three factors: 1 / pi if the image holds E / pi; 1 - F if lighting subtracts the Fresnel reflection F; the exposure.
+   * Take F at normal incidence. */
   float preExposure;
 
-  /* Required; one float channel. */
+  /* Required; a depth format or one float channel, in options.frontDepthEncoding: the surface that the camera sees. */
   PellucidImage frontDepth;
-  /* Nearest back face behind the front. Without it no thickness is the camera's, and thin parts return as much light as thick ones. */
+  /* Optional; as frontDepth, in options.backDepthEncoding: the nearest back face behind the front depth. Without it no light has the
+   * camera-space thickness, and thin parts return as much light as thick parts. */
   PellucidImage backDepth;
-  /* E from all around that arrives where backDepth lies, which nothing else tells: of light probes, say, in the units of `irradiance`.
-   * T of it comes through, in place of options.ambient's. docs/integration.md, "Ambient light". */
+  /* Optional; three float channels, in the units of `irradiance`: the irradiance of the hidden face from all around, as light probes
+   * have it. The part T(d) comes through. The image replaces options.ambient for hidden faces, and needs backDepth. docs/integration.md,
+   * "Ambient light". */
   PellucidImage hiddenIrradiance;
-  /* Required. E that arrives outside of the surface, times preExposure, which has 1 / pi or 1 - F if the image has them. Without albedo. */
+  /* Required; three float channels: the irradiance E of the visible surface times preExposure, without albedo and specular light. */
   PellucidImage irradiance;
-  /* Outward unit vectors, as PellucidContextOptions::normalEncoding says. */
+  /* Optional; outward unit vectors in PellucidContextOptions::normalEncoding. Without it curved surfaces return as much light as
+   * planes. */
   PellucidImage normal;
-  /* Multiplies the light after scattering. Without it the output is that of a white surface. */
+  /* Optional; three channels, 0..1: factor of the light after scattering. Without it the factor is 1. */
   PellucidImage albedo;
-  /* Required; unsigned integer: 0 none, i: materials[i - 1]. */
+  /* Required; unsigned integer. 0: no material. i: materials[i - 1]. */
   PellucidImage material;
-  /* Of reuse ACCUMULATE, which requires it; two float channels: the surface's place in the image less its place in the earlier frame,
-   * in parts of width and height, times options.motionScale. Without jitter. */
+  /* Required by reuse ACCUMULATE; two float channels, without jitter. Times options.motionScale, the vector is the surface's place in
+   * this frame minus the place in the earlier frame. Its unit is the image's width and height. */
   PellucidImage motion;
-  /* Required; storage image, which may be the irradiance's. It takes the place of a diffuse term: the irradiance after scattering, times
-   * preExposure and albedo. Pixels of material 0 are not written; alpha is the irradiance's. */
+  /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
+   * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. */
   PellucidImage output;
-  /* As pellucidGetImageNeeds lists them. */
+  /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
 
+  /* materialCount materials. */
   const PellucidMaterial* materials;
-  uint32_t materialCount; /* 1..255 */
-  /* Any number. */
+  /* 1..255. */
+  uint32_t materialCount;
+  /* Any number of lights. */
   uint32_t lightCount;
+  /* lightCount lights. */
   const PellucidLight* lights;
+  /* shadowMapCount maps of all lights. */
   const PellucidShadowMap* shadowMaps;
+  /* Any number of maps. */
   uint32_t shadowMapCount;
-  /* Depth or one float channel: views of the depth aspect alone. */
+  /* Any number of images, as far as a plan can bind them. */
   uint32_t shadowImageCount;
+  /* shadowImageCount images with depth or one float channel. A view has the depth aspect alone. */
   const PellucidImage* shadowImages;
+  /* pellucidInitFrame writes the defaults. */
   PellucidFrameOptions options;
 } PellucidFrame;
 
+/* Writes the defaults into a frame of structSize bytes. */
 PELLUCID_API void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize);
 /* Writes the defaults. */
 static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(f, sizeof *f); }
 
-/* Checks every convention and the domains of all fields (docs/materials.md), and calls `fn` for each finding. PELLUCID_OK unless one
- * is an error. CAPACITY: more shadow images than a plan can bind. */
+/* Checks every convention and the range of each field (docs/materials.md). Calls `fn` (optional) with each warning and error. Warnings
+ * alone return PELLUCID_OK. Errors: INVALID_ARGUMENT, VERSION; CAPACITY for more shadow images than a plan can bind. */
 PELLUCID_API PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
-/* A transient that the caller creates: 2D, one mip, usage SAMPLED | STORAGE. It holds nothing between frames, so that it may share
- * memory with whatever is not used during those dispatches. */
+/* An image that the caller creates: 2D, one mip, usage SAMPLED | STORAGE. A transient holds nothing between frames. Its memory may serve
+ * other uses outside of the dispatches firstDispatch to lastDispatch. */
 typedef struct PellucidImageNeed {
+  /* Format of the image. */
   VkFormat format;
+  /* Width and height in pixels. */
   uint32_t extent[2];
-  /* In plan.dispatches between which the image is in use. */
+  /* Indices into plan.dispatches: the first and the last dispatch that use the image. */
   uint32_t firstDispatch, lastDispatch;
-  uint64_t bytes; /* of texels, without what the device adds */
-  /* 1: for options.history in place of a transient; keeps its content between frames. */
+  /* Bytes of all texels. The device may need more. */
+  uint64_t bytes;
+  /* 0: a transient. 1: options.history, an image that keeps its content between frames. */
   uint32_t persistent;
 } PellucidImageNeed;
 
-/* The transients of this frame in order, for any render rect, then with reuse the persistent image. Writes up to *count needs and sets
- * *count to the number there are; `needs` may be NULL. Views are not looked at, so that the call precedes their creation. */
+/* Lists the transients of this frame in order, then with reuse the persistent image. The images serve every render rect. Writes at most
+ * *count needs, and sets *count to the number of all. `needs` may be NULL. Transients need no views yet. Optional inputs count as given
+ * if they have views. Errors: INVALID_ARGUMENT, VERSION, CAPACITY. */
 PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* ---- Plan and recording -------------------------------------------------------------------------- */
 
-/* The dispatches of a frame: plain data of at most 4096 bytes, complete in pellucid_plan.h. */
+/* The dispatches of a frame: plain data of at most 4096 bytes. pellucid_plan.h has the fields. */
 typedef struct PellucidPlan PellucidPlan;
 
-/* Pure: same frame and previous plan, same plan; no device, no allocation. The plan keeps no pointer to the frame, and depends on
- * which optional images have views. `previous`: the last recorded frame's plan, for options.reuse alone, or NULL. */
+/* Plans a frame. The function is pure: the same frame and previous plan give the same plan, without a device or allocation. The plan
+ * keeps no pointer to the frame. Optional images count as given if they have views. `previous`: the plan of the last recorded frame,
+ * for options.reuse alone, or NULL. Errors: INVALID_ARGUMENT, VERSION; CAPACITY for more dispatches than a plan holds. */
 PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
-/* Bytes that a slice needs at most for so many materials, lights and shadow maps. A map of two lights counts twice. */
+/* The most bytes that a slice needs for these numbers of materials, lights and shadow maps. A map of two lights counts twice. */
 PELLUCID_API VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
 
-/* Host-visible, host-coherent memory for one recording, usage STORAGE_BUFFER | UNIFORM_BUFFER | INDIRECT_BUFFER; device-local, too,
- * where there is such memory. The device also writes there. Each recording that the device has not finished needs a slice of its
- * own: a ring of as many as there are frames in flight. Nothing notices a slice that is written too early. */
+/* The constants of one recording: host-visible, host-coherent memory, device-local if such memory exists. The device also writes into
+ * the slice. Each recording that the device has not finished needs its own slice, so a ring has one slice for each frame in flight.
+ * No check notices a slice that is overwritten too early. */
 typedef struct PellucidConstantsSlice {
+  /* Usage STORAGE_BUFFER | UNIFORM_BUFFER | INDIRECT_BUFFER. */
   VkBuffer buffer;
-  /* A multiple of 256. */
+  /* Bytes, a multiple of 256. */
   VkDeviceSize offset;
-  /* >= plan.constantsSize. */
+  /* Bytes, at least plan.constantsSize. */
   VkDeviceSize size;
-  /* Address of `offset`. */
+  /* Host address of the byte at `offset`. */
   void* mapped;
 } PellucidConstantsSlice;
 
-/* Writes the constants of a plan, made from this frame, to `size` bytes at `mapped`; image views are not looked at. Errors:
+/* Writes the constants of a plan into `size` bytes at `mapped`. The plan was made from this frame. Image views are not checked. Errors:
  * INVALID_ARGUMENT for a null pointer, a frame that pellucidValidateFrame refuses, or a plan of another frame; BUFFER_TOO_SMALL. */
 PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame, void* mapped, size_t size);
 
-/* Scopes of the barriers around a recording, on any queue of a family that computes. */
+/* Stages and accesses of the barriers around a recording. Any queue family with COMPUTE may run a recording. */
 enum {
   PELLUCID_STAGES = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
   PELLUCID_READS = VK_ACCESS_SHADER_READ_BIT,
   PELLUCID_WRITES = VK_ACCESS_SHADER_WRITE_BIT
 };
 
-/* Records every dispatch and the barriers between them, outside of render passes. Before: the inputs are visible to PELLUCID_STAGES /
- * PELLUCID_READS, and the output and transients are free for PELLUCID_WRITES. After: `output` was written by PELLUCID_STAGES /
- * PELLUCID_WRITES. Left changed: pipeline and sets of the compute bind point, and 16 bytes of push constants. Of `frame` only images
- * and the descriptor pool are read, which may be others than when the plan was made. Errors: INVALID_ARGUMENT for an image
- * without a view, a plan that needs what the context leaves out, or a bad slice; BUFFER_TOO_SMALL. */
+/* Records the dispatches of a plan and the barriers between them, outside of render passes.
+ * - Before: the inputs are visible to PELLUCID_STAGES / PELLUCID_READS. Output and transients are free for PELLUCID_WRITES.
+ * - After: PELLUCID_STAGES / PELLUCID_WRITES have written `output`.
+ * - State: recording changes pipeline and sets of the compute bind point, and 16 bytes of push constants.
+ * - Frame: recording reads only images and descriptor pool of `frame`. Both may differ from those of pellucidBuildPlan.
+ * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a pipeline that the context lacks, or a bad slice;
+ *   BUFFER_TOO_SMALL; OUT_OF_MEMORY and VULKAN of the descriptor pool. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                const PellucidPlan* plan, const PellucidFrame* frame,
                                                const PellucidConstantsSlice* constants);

@@ -1,5 +1,5 @@
-/* Options of the context, the frame and a shadow map. pellucid.h includes this header, and its reader may stop there:
- * pellucidInitContextDesc and pellucidInitFrame write the defaults. Options of a shadow map are 0 by default.
+/* Options of the context, the frame and a shadow map. pellucid.h includes this header. All options have defaults.
+ * pellucidInitContextDesc and pellucidInitFrame write these defaults. Options of a shadow map are 0 by default.
  */
 #ifndef PELLUCID_OPTIONS_H
 #define PELLUCID_OPTIONS_H
@@ -13,12 +13,12 @@ extern "C" {
 
 /* ---- Context ----------------------------------------------------------------------------------- */
 
-/* Uses that frames make of a context. A pipeline is made if all that it is for is asked for; recording refuses a plan that
- * needs another one. */
+/* Features that the frames of a context use, as bits. The context makes only the pipelines whose features are all in `uses`. Recording
+ * refuses a plan that needs another pipeline or feature. */
 typedef enum PellucidUse {
-  /* Lights that are not gathered from, and thin walls. */
+  /* Light with one thickness a pixel, and thin walls. */
   PELLUCID_USE_TRANSLUCENCY = 1 << 0,
-  /* Gathered light. */
+  /* Light that the gather finds. */
   PELLUCID_USE_GATHER = 1 << 1,
   /* Light that spreads under the surface. */
   PELLUCID_USE_DIFFUSION = 1 << 2,
@@ -26,249 +26,269 @@ typedef enum PellucidUse {
   PELLUCID_USE_REUSE = 1 << 3,
   /* PellucidFrameOptions::debugView. */
   PELLUCID_USE_DEBUG_VIEWS = 1 << 4,
-  /* Options that pipelines look for, unless the context's uses leave them out: materials with thinWalled, */
+  /* Materials with thinWalled 1. */
   PELLUCID_USE_THIN_WALLS = 1 << 5,
-  /* PellucidFrameOptions::ambient, */
+  /* PellucidFrameOptions::ambient and PellucidFrame::hiddenIrradiance. */
   PELLUCID_USE_AMBIENT = 1 << 6,
-  /* thesis->angleModel other than NORMAL, and transmittance models but EXP2 and SINH_EXP. */
+  /* Every thesis->angleModel but NORMAL, and every transmittance model but EXP2 and SINH_EXP. */
   PELLUCID_USE_THESIS = 1 << 7
 } PellucidUse;
 
-/* Calls job(data, i) for each i below count, on any threads and in any order, and returns when all have returned. */
+/* Calls job(data, i) for each i below count, on any threads and in any order. Returns after the last job. */
 typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
 
 /* How the normal image holds a vector n. */
 typedef enum PellucidNormalEncoding {
-  /* n in RGB, -1..1: SNORM and float formats; (0, 0, 0): none at this pixel. */
+  /* n in RGB, -1..1, in SNORM and float formats. (0, 0, 0): the pixel has no normal. */
   PELLUCID_NORMALS_SNORM = 0,
-  /* (n + 1) / 2 in RGB, 0..1; (0, 0, 0), which is no unit vector: none. */
+  /* (n + 1) / 2 in RGB, 0..1. (0, 0, 0): the pixel has no normal. */
   PELLUCID_NORMALS_UNORM = 1,
-  /* "oct" of Cigolle et al. 2014 in RG, -1..1: n / (|x| + |y| + |z|), whose half of z < 0 is folded over the corners. Cannot say
-   * none. */
+  /* "oct" of Cigolle et al. 2014 in RG, -1..1: x and y of n / (|x| + |y| + |z|). The half z < 0 is folded over the corners. Every pixel
+   * has a normal. */
   PELLUCID_NORMALS_OCTAHEDRAL = 2,
-  /* (oct + 1) / 2 in RG, 0..1. */
+  /* OCTAHEDRAL as (oct + 1) / 2 in RG, 0..1. */
   PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3
 } PellucidNormalEncoding;
 
+/* Options of a context. */
 typedef struct PellucidContextOptions {
   /* PellucidUse bits; 0 (default): all. */
   uint32_t uses;
-  /* That of PellucidFrameOptions of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT. UNDEFINED: any, on a device with
-   * shaderStorageImageWriteWithoutFormat enabled. */
+  /* PellucidFrameOptions::outputFormat of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT. UNDEFINED: frames may have any
+   * of their formats. The device then needs shaderStorageImageWriteWithoutFormat enabled. */
   VkFormat outputFormat;
-  /* PellucidNormalEncoding of all frames; default SNORM. A library built with PELLUCID_GBUFFER_DECODE decodes by itself. */
+  /* PellucidNormalEncoding of all frames; default SNORM. A library built with PELLUCID_GBUFFER_DECODE has its own decoding instead. */
   uint32_t normalEncoding;
-  /* Of all shadow images: 2D (default), or 2D_ARRAY, of which one view of all layers serves every map in them. Each frame then has a
-   * shadow image, maps or not. */
+  /* Type of all views of shadow images: 2D (default) or 2D_ARRAY. A 2D_ARRAY view has all layers and serves the maps of all layers. Each
+   * frame then needs a shadow image, even without maps. */
   VkImageViewType shadowViewType;
-  /* 1: frames may have light tables; 0 (default): none has. */
+  /* 1: frames may have light tables. 0 (default): no frame has light tables. */
   uint32_t lightTables;
-  /* 1: each frame brings a pool that its descriptors come from, for devices that cannot push them; 0 (default): they are pushed. */
+  /* 1: descriptors come from PellucidFrameOptions::descriptorPool, for devices without push descriptors. 0 (default): recording pushes
+   * descriptors. */
   uint32_t descriptorPools;
-  /* 1: creation makes no pipelines, and pellucidCreatePipelines makes those of a plan; 0 (default): creation makes all of `uses`. */
+  /* 1: pellucidCreateContext makes no pipelines, and pellucidCreatePipelines makes the pipelines of a plan. 0 (default):
+   * pellucidCreateContext makes the pipelines of `uses`. */
   uint32_t deferPipelines;
-  /* Optional. */
+  /* Optional; the cache in which pipelines are looked up and stored. */
   VkPipelineCache pipelineCache;
-  /* Optional; host memory of Vulkan objects. */
+  /* Optional; allocates the host memory of Vulkan objects. */
   const VkAllocationCallbacks* allocator;
-  /* Optional; lends threads to the creation of pipelines. The allocator's and the cache's functions are called on them. */
+  /* Optional; runs the creation of pipelines on several threads. These threads use allocator and pipelineCache. */
   PellucidParallelForFn parallelFor;
+  /* First argument of parallelFor. */
   void* parallelUser;
 } PellucidContextOptions;
 
 /* ---- Frame --------------------------------------------------------------------------------------- */
 
-/* Parts of a frame. */
+/* Parts of a frame, as bits. */
 typedef enum PellucidFeatureBits {
-  /* Light that comes through. */
+  /* Light that comes through the body. */
   PELLUCID_FEATURE_TRANSLUCENCY = 1u << 0,
   /* Light that spreads under the surface. */
   PELLUCID_FEATURE_DIFFUSION = 1u << 1
 } PellucidFeatureBits;
 
-/* Frames that use the light that came through in earlier ones. Irradiance and diffusion are always the frame's own. Pass no previous
- * plan after a cut. ALTERNATE and COHERENCE look kept light up at the same pixel: moving surfaces lag by the frames in between. */
+/* How a frame reuses light that came through in earlier frames. Irradiance and diffusion are always new. After a cut, pass no previous
+ * plan. ALTERNATE and COHERENCE keep the light of a pixel: on moving surfaces, kept light lags behind. */
 typedef enum PellucidReuse {
+  /* Each frame computes the light. */
   PELLUCID_REUSE_NONE = 0,
-  /* Every second frame (Whelan 2009, 4.7.4). */
+  /* Every second frame computes the light (Whelan 2009, 4.7.4). */
   PELLUCID_REUSE_ALTERNATE = 1,
-  /* Until the cosine between the camera's axis and the direction to a light has changed by more than the threshold (Whelan 2009,
-   * 4.7.5). Point and spot lights are seen from thesis->objectCenter. */
+  /* A frame computes the light if a cosine has changed by more than coherenceThreshold (Whelan 2009, 4.7.5). It is the cosine between
+   * the camera's axis and the direction to a light. The direction to point and spot lights is from thesis->objectCenter. */
   PELLUCID_REUSE_COHERENCE = 2,
-  /* Probes are averaged over frames, each with the place that frame.motion says it had, and take other samples in each frame. Noise
-   * falls to a quarter, and light that changes arrives within frames. Only of gathered light. */
+  /* Gathered light alone: each frame takes other samples and averages its probes with the earlier frame's probes, at the place that
+   * frame.motion gives. Noise falls to a quarter. Changes of light arrive within a few frames. */
   PELLUCID_REUSE_ACCUMULATE = 4
 } PellucidReuse;
 
-/* An intermediate that `output` gets in place of the result. Float values; alpha is kept. */
+/* A debug view: an intermediate result in place of the output, in floats. Alpha is the irradiance's. */
 typedef enum PellucidDebugView {
+  /* The result. */
   PELLUCID_DEBUG_NONE = 0,
-  /* mm: R camera-space chord, G light-space of the first light with a map that contains the pixel, B that of the first contributing
-   * light; -1: none. */
+  /* Thickness in mm; -1: none. R: camera-space thickness. G: light-space thickness of the first light whose map contains the pixel. B:
+   * thickness of the first light that contributes. */
   PELLUCID_DEBUG_THICKNESS = 1,
-  /* Transmitted / arriving, summed over lights; 0 where none. */
+  /* Light that comes through, divided by the light that arrives at hidden faces, both summed over lights; 0: no light arrives. */
   PELLUCID_DEBUG_TRANSMITTANCE = 2,
-  /* Fraction of the lights' back irradiance that the maps let by. */
+  /* The part of the lights' hidden irradiance that shadow maps do not block, 0..1. */
   PELLUCID_DEBUG_OCCLUSION = 3,
-  /* Irradiance + transmitted / rho, which the diffusion reads. */
+  /* Input of the diffusion: irradiance + light that comes through / rho. */
   PELLUCID_DEBUG_IRRADIANCE = 4
 } PellucidDebugView;
 
+/* Entries of a light table, and most light tables of a frame. */
 enum { PELLUCID_LIGHT_TABLE_ENTRIES = 64, PELLUCID_MAX_LIGHT_TABLES = 16 };
 
-/* A light's own falloff, linear between entries.
- * By angle: entry i is the factor at i / 63 pi from `direction`, which point lights then have, too. An IES profile that is the same
- * all around is one, over its most candela, which are the intensity. A spot keeps its cone.
- * By distance: entry i is the factor of 1 / r^2 at i / 63 range, in place of the range's window; range > 0. An engine's falloff
- * f(r) has entries r^2 f(r) over their maximum. */
+/* Light table: factors of a light's intensity, linear between entries.
+ * - By angle: entry i is the factor at the angle pi i / 63 from light.direction, which a point light then needs, too. For an IES
+ *   profile of equal values all around, divide the candela by the largest candela, which is the intensity. A spot keeps its cone.
+ * - By distance: entry i is the factor of 1 / r^2 at r = range i / 63, with range > 0. These factors replace 1 - (r / range)^4. An
+ *   engine's falloff f(r) has the entries r^2 f(r), divided by the largest entry. The intensity is multiplied by this entry. */
 typedef struct PellucidLightTable {
-  /* [0, 1], kept as halves; light.intensity has the scale. */
+  /* 0..1, stored as half floats. */
   float factor[PELLUCID_LIGHT_TABLE_ENTRIES];
 } PellucidLightTable;
 
+/* Words of a material's tables. */
 enum { PELLUCID_MATERIAL_TABLE_WORDS = 3712 };
 
-/* Tables of a material, made once with it: its profile over the pyramid's levels, and numbers of the gather. Plain data. */
+/* Tables of a material: the shares of its profile by the pyramid's levels, and numbers of the gather. Plain data, made once a material. */
 typedef struct PellucidMaterialTables {
-  /* Not for callers. */
+  /* Private. */
   uint32_t words[PELLUCID_MATERIAL_TABLE_WORDS];
 } PellucidMaterialTables;
 
-/* Writes the tables of a material, compiled or by hand. INVALID_ARGUMENT: a null pointer, or a material that pellucidValidateFrame
- * refuses. */
+/* Writes the tables of a material, compiled or filled by hand. Errors: INVALID_ARGUMENT for a null pointer, or a material that
+ * pellucidValidateFrame refuses. */
 PELLUCID_API PellucidResult pellucidMakeMaterialTables(const PellucidMaterial* material, PellucidMaterialTables* tables);
 
-/* Options of Whelan 2009, pellucid_thesis.h. */
+/* Options of Whelan 2009. pellucid_thesis.h has the fields. */
 typedef struct PellucidThesisOptions PellucidThesisOptions;
 
+/* Options of a frame. */
 typedef struct PellucidFrameOptions {
   /* PellucidFeatureBits; default both. */
   uint32_t features;
-  /* x, y, width, height inside imageExtent, beyond which nothing is read or written; width 0 (default): the whole image. */
+  /* x, y, width, height in pixels, inside imageExtent. No pixel outside is read or written. Width 0 (default): the whole image. */
   uint32_t renderRect[4];
 
   /* ---- inputs and output ---- */
 
   /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z. */
   uint32_t frontDepthEncoding, backDepthEncoding;
-  /* 1: normals are of view space; 0 (default): world. */
+  /* 1: normals are in view space. 0 (default): world space. */
   uint32_t normalsInViewSpace;
-  /* The index is (R of the material image & mask) >> shift, so that other bits may hold anything. Shift 0..31; mask 0 (default): all
-   * bits, else those of all indices. */
+  /* The material index is (value & materialMask) >> materialShift. Other bits of the value are ignored. Shift: 0..31; default 0. Mask 0
+   * (default): all bits. Any other mask must contain the bits of every index. */
   uint32_t materialShift, materialMask;
-  /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT, or B10G11R11_UFLOAT_PACK32, which has no alpha; see
-   * PellucidContextOptions::outputFormat. 32 bits keep colors up to 65504: to 1e-6 without diffusion, to 2^-10 with it. */
+  /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT, or B10G11R11_UFLOAT_PACK32 without alpha. The format must fit
+   * PellucidContextOptions::outputFormat. Relative error of 32 bits: 1e-6 without diffusion, 2^-10 with diffusion. */
   VkFormat outputFormat;
-  /* 1: the result is added to the output's color, which is specular light, say, and alpha stays. The sum is clamped to 0..65504, and NaN
-   * counts as 0. The output is not the irradiance image, and has usage SAMPLED, too. Debug views replace. 0 (default): the output
-   * becomes the result. For renderers without a pass that composites; docs/integration.md. */
+  /* 0 (default): the result replaces the output. 1: the result is added to the output's color, for renderers that do not composite in a
+   * later pass (docs/integration.md). The sum is clamped to 0..65504, NaN counts as 0, and alpha stays. The output then has usage
+   * SAMPLED, too, and is not the irradiance image. Debug views still replace the output. */
   uint32_t addToOutput;
-  /* 1: the output shares no memory with the irradiance, of which diffusion without lights then needs no copy; 0 (default): it may. */
+  /* 1: output and irradiance image share no memory. Diffusion without lights then saves a copy. 0 (default): they may share memory. */
   uint32_t separateOutput;
 
   /* ---- the gather: light of maps that comes through ---- */
 
-  /* Samples of the shadow map by each probe, a multiple of 4, at most 64; default 8. More lower the noise of thin parts. 0: one
-   * light-space thickness a pixel, which frames also get, as skips say, with a solid not of EXP2 or SINH_EXP, with cameraThickness, a
-   * material mark bit, or thesis options of one thickness a pixel. */
+  /* Samples of the shadow map by each probe, a multiple of 4 up to 64; default 8. More samples lower the noise of thin parts. 0: one
+   * light-space thickness a pixel. Some frames cannot be gathered, as plan.skips says. Causes are a solid of another model than EXP2 or
+   * SINH_EXP, cameraThickness 1, and five options of thesis: angleModel, constantViewDirection, minimumDot, maximumThickness and
+   * materialMarkBit. */
   uint32_t gatherSamples;
-  /* Pixels a side of a probe's cell: 1, 2 or 4. 0 (default): 4 in images of more than 2^20 pixels, 2 of more than 2^19, else 1. Each
-   * step costs a quarter of the one before; 4 needs pixels far below a mean free path. */
+  /* Pixels a side of a probe's cell: 1, 2 or 4. 0 (default): 4 in images of more than 2^20 pixels, 2 in images of more than 2^19
+   * pixels, else 1. Probes of 2 cost a quarter of probes of 1, and probes of 4 a quarter of probes of 2. 4 needs pixels far smaller than a
+   * diffusion length. */
   uint32_t gatherSpacing;
-  /* Planar distance of the nearest surface that diffuses, or less, scene units. It leaves out levels for radii that are small in
-   * pixels; nearer surfaces are then diffused too little. 0 (default): not known. Orthographic cameras need none. */
+  /* Planar distance from the eye to the nearest surface that diffuses, or less, in scene units, 0..1e15. The plan leaves out pyramid levels
+   * that no radius needs at this distance. Nearer surfaces are diffused too little. 0 (default): not known. Orthographic cameras need no
+   * distance. */
   float nearestDistance;
-  /* 1: thickness is back depth minus front depth, and shadow maps only occlude; 0 (default): along the light ray from the map's
-   * surface. Lights without a map always take the camera's. */
+  /* 1: all lights have the camera-space thickness, and shadow maps only occlude. 0 (default): lights with a map have the light-space
+   * thickness. Lights without a map always have the camera-space thickness. */
   uint32_t cameraThickness;
 
   /* ---- other light ---- */
 
-  /* Light from all around that comes through thin parts, or NULL (default): 9 x RGB coefficients of radiance without
-   * preExposure, -1e15..1e15, of the real orthonormal spherical harmonics of the world direction that light comes from, in the order 1, y, z, x, xy, yz, 3 z^2 - 1,
-   * xz, x^2 - y^2. The irradiance image has the light of visible faces. Needs backDepth. Nothing shadows hidden faces, unless
-   * frame.hiddenIrradiance has their light. */
+  /* Light from all around that comes through thin parts: 9 x RGB coefficients of radiance without preExposure, -1e15..1e15. NULL (default):
+   * no light. Basis: real orthonormal spherical harmonics of the world direction from which light comes. Order: 1, y, z, x, xy, yz,
+   * 3 z^2 - 1, xz, x^2 - y^2. The irradiance image has this light of visible faces. Needs backDepth. Nothing shadows hidden faces,
+   * unless frame.hiddenIrradiance has their light. */
   const float* ambient;
-  /* Lights may share them. 0..PELLUCID_MAX_LIGHT_TABLES, above 0 only with PellucidContextOptions::lightTables. */
+  /* 0..PELLUCID_MAX_LIGHT_TABLES; default 0. Above 0 only with PellucidContextOptions::lightTables 1. */
   uint32_t lightTableCount;
+  /* lightTableCount tables. Lights may share a table. */
   const PellucidLightTable* lightTables;
 
   /* ---- recording ---- */
 
-  /* 1 (default): the GPU runs groups where it finds material, and the slice's buffer has usage INDIRECT_BUFFER; 0: over the whole
-   * rect. */
+  /* 1 (default): passes run in blocks where the GPU finds material. The slice's buffer then has usage INDIRECT_BUFFER. 0: passes run over
+   * the whole rect. */
   uint32_t indirectDispatches;
-  /* materialCount of them, each of the material of its index; NULL (default): made anew for each frame, which takes 20 us of CPU
-   * time a material. */
+  /* materialCount tables, in the order of frame.materials. NULL (default): each frame makes the tables, in 20 us of CPU time a
+   * material. */
   const PellucidMaterialTables* materialTables;
-  /* With PellucidContextOptions::descriptorPools, by pellucidCreateDescriptorPool. Recording resets it: each recording that the device
-   * has not finished needs a pool of its own, as of constants slices. */
+  /* Required with PellucidContextOptions::descriptorPools 1; pellucidCreateDescriptorPool makes it. Recording resets the pool. Each
+   * recording that the device has not finished needs its own pool. */
   VkDescriptorPool descriptorPool;
 
   /* ---- reuse, debug views, thesis ---- */
 
-  /* PellucidReuse. */
+  /* PellucidReuse; default NONE. */
   uint32_t reuse;
-  /* Of COHERENCE, 0..2; default .005. Multiply it by frame time / budget where that is above 1, as Whelan 2009, 4.7.5 does. */
+  /* Change of the cosine that COHERENCE tolerates, 0..2; default .005. Whelan 2009, 4.7.5, multiplies the threshold by frame time / budget
+   * if this quotient is above 1. */
   float coherenceThreshold;
-  /* With reuse: the persistent image of pellucidGetImageNeeds, GENERAL, the same in all frames. */
+  /* Required by reuse: the persistent image of pellucidGetImageNeeds, in layout GENERAL, the same image in all frames. */
   PellucidImage history;
-  /* PellucidDebugView. */
+  /* PellucidDebugView; default NONE. */
   uint32_t debugView;
-  /* NULL (default): none. */
+  /* NULL (default): no options of Whelan 2009. */
   const PellucidThesisOptions* thesis;
 
   /* ---- motion ---- */
 
-  /* World-space point x, y, z with w 1 on the body that the camera looks at. Cells, patterns of samples and texels of the pyramid
-   * follow the point's pixel, so that noise moves with the body and not over it. Transients then grow by up to 127 pixels a side. Not
-   * with reuse ALTERNATE or COHERENCE. w 0 (default): they stay with the screen, as they do while the point is behind the camera. */
+  /* World-space point x, y, z on the body that the camera looks at, with w = 1. Cells, patterns of samples and texels of the pyramid
+   * follow the point's pixel. Noise then moves with the body. Transients grow by up to 127 pixels a side. Reuse ALTERNATE and COHERENCE
+   * refuse an anchor. w = 0 (default), or a point behind the camera: cells, patterns and texels stay with the screen. */
   float anchor[4];
-  /* Of what frame.motion holds to parts of the image's width and height, -1e6..1e6; default 1, 1. For pixels: 1 over the extent. */
+  /* Factors that turn frame.motion into parts of the image's width and height, -1e6..1e6; default 1, 1. Motion in pixels: 1 / width,
+   * 1 / height. */
   float motionScale[2];
 } PellucidFrameOptions;
 
 /* ---- Shadow map ------------------------------------------------------------------------------------ */
 
-/* docs/integration.md, "Shadow maps as engines draw them", says which option an engine's habit asks for. All but a matrix that is
- * read default to 0. */
+/* Options of a shadow map, 0 by default. VIEW_Z and DISTANCE maps need viewFromWorld. docs/integration.md, "Shadow maps as engines
+ * draw them", has the options by the way an engine draws its maps. */
 typedef struct PellucidShadowMapOptions {
-  /* Texels, 0..65535: the map's first texel in the image, an atlas. offset + extent <= 65536. Nothing beyond is read. */
+  /* x, y of the map's first texel in an atlas, 0..65535, with offset + extent <= 65536. No texel outside of the map's tile is read. */
   uint32_t offset[2];
-  /* Array layer, 0..65535; above 0 only with PellucidContextOptions::shadowViewType 2D_ARRAY. */
+  /* Layer of the shadow image, 0..65535; above 0 only with PellucidContextOptions::shadowViewType 2D_ARRAY. */
   uint32_t layer;
-  /* 1: the map holds the faces by which light leaves, drawn with front faces culled. Its light has the camera's thickness, is not gathered,
-   * and needs frame.backDepth; receivers beyond the stored face are in shadow. All maps of a light hold the same faces. */
+  /* 1: the map holds back faces, drawn with front faces culled. The light then has the camera-space thickness, needs frame.backDepth, and
+   * is not gathered. Receivers beyond the stored face are in shadow. All maps of a light must have the same value. 0 (default): front
+   * faces. */
   uint32_t backFaces;
-  /* The light's rigid view matrix: right-handed, -z forward. Required for VIEW_Z, and for DISTANCE of directional lights. Not read
-   * for DEVICE, nor for DISTANCE of point and spot lights. */
+  /* The light's view matrix: a rotation and a translation, right-handed, -z forward. VIEW_Z and DISTANCE need a valid matrix. DEVICE does
+   * not read it. */
   float viewFromWorld[16];
 
-  /* How far stored depths lie from the surface; subtracted before a depth is used. Biases have the sign with which they were added, so
-   * that those of reversed depths are negative. */
+  /* ---- biases. Passes subtract them from stored depths. Signs are those of vkCmdSetDepthBias: negative for reversed depths ---- */
+
   /* In units of the stored depth, -1e15..1e15. VIEW_Z and DISTANCE: scene units. DEVICE: the constant factor of vkCmdSetDepthBias
-   * times 2^-16 for D16, 2^-24 for D24, and 2^(e - 23) for D32, where 2^e <= the triangle's largest depth: 2^-24 from .5 on. */
+   * times 2^-16 for D16, 2^-24 for D24, or 2^(e - 23) for D32. 2^e is the largest power of two up to the triangle's largest depth. For
+   * depths from .5 to 1 the factor is 2^-24. */
   float depthBiasConstant;
-  /* Slope factor of vkCmdSetDepthBias, -1e6..1e6: times the larger of the stored depth's changes per texel along x and y, taken
-   * from the nearer of the neighbors. */
+  /* Slope factor of vkCmdSetDepthBias, -1e6..1e6. Passes multiply it by the change of stored depth per texel, the larger of x and y. Each
+   * change is to the neighbor whose depth differs least. */
   float depthBiasSlope;
-  /* Scene units along the light's ray, 0..1e15, by which the stored surface lies farther from the light: moved vertices, or an offset
-   * by the shader that wrote depth. */
+  /* Distance along the light ray, in scene units, 0..1e15, by which the stored surface lies farther from the light than the body. Causes
+   * are moved vertices, or an offset in the shader that writes depth. */
   float offsetLength;
-  /* Smallest difference of stored depths, 0..1e15, for which tolerances allow: 1/65535 for D16, 2^-24 for D24; 0: as fine as floats. */
+  /* Smallest difference of stored depths, 0..1e15, to which tolerances are adapted: 1/65535 for D16, 2^-24 for D24. 0 (default): float
+   * precision. */
   float depthStep;
 
-  /* Images of what lies behind the stored surface, with the map's offset, extent and layer: indices into frame.shadowImages plus 1;
-   * 0: not given. Without them everything between that surface and the receiver counts as the receiver's medium, air included. A
-   * dispatch binds 8 shadow images, and those of one light must fit into one; where those of all lights exceed a plan's
-   * dispatches, all exit depths and caster materials are left out, as a skip says. */
-  /* Depth of the nearest back face behind the stored surface, in the map's encoding and matrices, without biases. Receivers beyond it
-   * are in shadow. Nothing there, or NaN: the medium goes on. Not read with cameraThickness or backFaces. */
+  /* ---- further images of the map, with its offset, extent and layer. Without them all matter and air between the stored surface and the
+   * receiver counts as the receiver's medium. A dispatch binds 8 shadow images, and the images of one light must fit into one dispatch.
+   * If a plan cannot bind the images of all lights, it leaves out all exit depths and caster materials, and plan.skips says so. ---- */
+
+  /* Index into frame.shadowImages plus 1; 0 (default): no image. Exit depth: the depth of the nearest back face behind the stored surface,
+   * in the map's encoding and matrices, without biases. Receivers beyond the exit depth are in shadow. An empty texel or NaN: the medium
+   * does not end. Not read with cameraThickness or backFaces. */
   uint32_t exitImage;
-  /* One float channel: material of the stored surface, numbered as in frame.material without the mark bit; 0: opaque. Light enters
-   * receivers of that material only. */
+  /* Index into frame.shadowImages plus 1; 0 (default): no image. Caster material: the material index of the stored surface in one float
+   * channel, without thesis->materialMarkBit; 0: opaque. Light reaches receivers of the same index only. */
   uint32_t casterMaterialImage;
-  /* The number is round(value * scale), 0..65536; 0: 255, for R8_UNORM; 1 for formats that hold the number itself. */
+  /* Factor of the caster material, 0..65536: the index is round(value * scale). 0 (default): 255, for R8_UNORM. Use 1 for formats that
+   * hold the index itself. */
   float casterMaterialScale;
 } PellucidShadowMapOptions;
 

@@ -1,8 +1,7 @@
-/* Contents of a plan, for engines that record plans themselves, and its text.
+/* Fields of a plan, for engines that record plans themselves, and a plan's JSON.
  *
- * A plan is plain data without pointers but to static strings: it may be copied, and it outlives the frame
- * that it was made from. pellucid.h includes this header, so that callers of pellucidRecordPlan can have plans
- * on their stacks; they need not read it.
+ * A plan is plain data with pointers to static strings alone. A copy of a plan is a valid plan. A plan outlives its
+ * frame. pellucid.h includes pellucid_plan.h, because a caller's plan needs a complete type.
  */
 #ifndef PELLUCID_PLAN_H
 #define PELLUCID_PLAN_H
@@ -13,8 +12,8 @@
 extern "C" {
 #endif
 
-/* Images and buffers a dispatch binds, as bits for pellucidGetRequiredInputs and as names in plans.
- * Transients are PELLUCID_RESOURCE_TRANSIENT0 + index, shadow images SHADOW0 + index. */
+/* Images and buffers that a dispatch binds. Transient i is PELLUCID_RESOURCE_TRANSIENT0 + i, and shadow image i is
+ * PELLUCID_RESOURCE_SHADOW0 + i. */
 typedef enum PellucidResource {
   PELLUCID_RESOURCE_FRONT_DEPTH = 0,
   PELLUCID_RESOURCE_BACK_DEPTH = 1,
@@ -31,6 +30,7 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_SHADOW0 = 19
 } PellucidResource;
 
+/* Limits of plans and dispatches. */
 enum {
   PELLUCID_MAX_DISPATCHES = 32,
   PELLUCID_MAX_BINDINGS = 24,
@@ -43,99 +43,134 @@ enum {
 
 /* One binding of a dispatch, by pellucidGetBindings. */
 typedef struct PellucidBinding {
-  uint32_t binding;            /* of set 0; pellucidBindingName() reads it. A number is one binding in all pipelines */
-  VkDescriptorType type;       /* of the binding */
-  uint32_t resource;           /* PellucidResource */
-  VkDeviceSize offset, size;   /* bytes in the constants slice; buffers only */
+  /* Number in set 0, the same in all pipelines. pellucidBindingName names it. */
+  uint32_t binding;
+  /* Type of the descriptor. */
+  VkDescriptorType type;
+  /* PellucidResource. */
+  uint32_t resource;
+  /* Bytes: the range of the constants slice. Images have 0. */
+  VkDeviceSize offset, size;
 } PellucidBinding;
 
 /* One dispatch of a plan. */
 typedef struct PellucidDispatch {
-  const char* name;             /* static string */
-  uint32_t groups[3];           /* workgroups; the most there may be when indirect */
-  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4]; /* from offset 0 on */
-  uint32_t indirectOffset;      /* bytes from the slice's offset */
-  uint8_t pipeline;             /* index below pellucidGetPipelineCount(); pellucidPipelineName() reads it */
-  uint8_t indirect;             /* 1: VkDispatchIndirectCommand at indirectOffset of the constants slice, which earlier
-                                   dispatches decide */
-  uint8_t barrierBefore;        /* 1: a compute-to-compute memory barrier precedes the dispatch */
-  uint8_t barrierIndirect;      /* 1: DRAW_INDIRECT / INDIRECT_COMMAND_READ waits for that barrier, too */
-  uint16_t slots[PELLUCID_PLAN_SLOTS]; /* what it binds, for pellucidGetBindings */
-  uint8_t firstShadowImage, shadowImageCount;  /* of plan.shadowImages, for pellucidGetBindings */
+  /* Static string. */
+  const char* name;
+  /* Workgroups; with `indirect` the largest possible numbers. */
+  uint32_t groups[3];
+  /* Push constants from offset 0 on. */
+  uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
+  /* Bytes from the slice's offset to the VkDispatchIndirectCommand. */
+  uint32_t indirectOffset;
+  /* Index below pellucidGetPipelineCount(). pellucidPipelineName names it. */
+  uint8_t pipeline;
+  /* 1: the VkDispatchIndirectCommand at indirectOffset has the workgroups. Earlier dispatches write it. */
+  uint8_t indirect;
+  /* 1: a compute-to-compute memory barrier precedes the dispatch. */
+  uint8_t barrierBefore;
+  /* 1: this barrier also includes DRAW_INDIRECT / INDIRECT_COMMAND_READ as destination. */
+  uint8_t barrierIndirect;
+  /* Private; pellucidGetBindings reads the slots. */
+  uint16_t slots[PELLUCID_PLAN_SLOTS];
+  /* Range of plan.shadowImages. Private; pellucidGetBindings reads it. */
+  uint8_t firstShadowImage, shadowImageCount;
 } PellucidDispatch;
 
 /* Something that a plan leaves out. */
 typedef struct PellucidSkip {
-  const char* what;   /* static string */
-  const char* reason; /* static string */
-  uint32_t count;     /* how many (lights, say) */
+  /* Name of the part, a static string. */
+  const char* what;
+  /* Static string. */
+  const char* reason;
+  /* Number of parts left out, as the number of lights. */
+  uint32_t count;
 } PellucidSkip;
 
-/* At most 4096 bytes. */
+/* A plan, at most 4096 bytes. */
 struct PellucidPlan {
-  uint32_t dispatchCount, barrierCount; /* of dispatches, and how many have a barrier before */
-  uint32_t skipCount;         /* of skips */
-  uint32_t activeLights;      /* lights that can contribute; the others are in skips */
-  VkDeviceSize constantsSize; /* bytes pellucidWriteConstants writes */
-  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES]; /* in order */
-  PellucidSkip skips[PELLUCID_MAX_SKIPS]; /* what is left out, and why */
-  float largestRadius; /* pixels within which 99.9 % of the diffused energy lies, of the widest channel of all
-                          materials at options.nearestDistance; 0: not known, or nothing diffuses */
-  uint32_t gatherSamples; /* of each probe: options.gatherSamples; 0: lights with a shadow map
-                             have one thickness a pixel */
-  uint32_t historyAge;    /* frames since options.history was written (ACCUMULATE: begun), by the last one that computed light that
-                             comes through; 0: this frame computes it */
-  uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES]; /* that dispatches bind, for pellucidGetBindings */
-  uint32_t state[PELLUCID_PLAN_STATE_WORDS]; /* not for callers: how the next plan decides about reuse, and what recording asks of a
-                                                context */
+  /* Dispatches, and the number of dispatches with barrierBefore 1. */
+  uint32_t dispatchCount, barrierCount;
+  /* Number of skips. */
+  uint32_t skipCount;
+  /* Lights that can contribute. Skips list the other lights. */
+  uint32_t activeLights;
+  /* Bytes that pellucidWriteConstants writes. */
+  VkDeviceSize constantsSize;
+  /* dispatchCount dispatches, in the order of recording. */
+  PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
+  /* skipCount skips. */
+  PellucidSkip skips[PELLUCID_MAX_SKIPS];
+  /* Largest radius of all materials and channels, in pixels at options.nearestDistance. 0: not known, or no material diffuses. */
+  float largestRadius;
+  /* Samples of each probe. 0: lights with a shadow map have one thickness a pixel. */
+  uint32_t gatherSamples;
+  /* Age of options.history in frames. ALTERNATE, COHERENCE: frames since a frame computed the light that comes through; 0: this frame
+   * computes it. ACCUMULATE: frames since accumulation began. */
+  uint32_t historyAge;
+  /* Private; pellucidGetBindings reads the images. */
+  uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES];
+  /* Private: data by which the next plan decides about reuse, and the requirements of recording. */
+  uint32_t state[PELLUCID_PLAN_STATE_WORDS];
 };
 
-/* What a dispatch binds, in the order of binding numbers: writes at most PELLUCID_MAX_BINDINGS, returns how many. 0 for a
- * dispatch that the plan does not have. */
+/* Writes the bindings of dispatch number `dispatch`, in the order of binding numbers, at most PELLUCID_MAX_BINDINGS. Returns their
+ * number. 0: the plan has no such dispatch. */
 PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
 
-/* Makes those pipelines that the plan dispatches and a context with options.deferPipelines lacks, of those of options.uses: for tools,
- * which render few frames. options.pipelineCache and parallelFor must be alive still. No other thread uses the context at the
- * same time. On failure the message callback has the sentence, and pipelines made so far stay. */
+/* Makes the pipelines that the plan needs and the context lacks, for a context with options.deferPipelines 1. Pipelines outside of
+ * options.uses are not made. options.pipelineCache and parallelFor must still exist. No other thread may use the context at the same
+ * time. On failure the context's `message` gets a sentence, and finished pipelines stay. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY,
+ * VULKAN. */
 PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
 
-/* Makes an options.descriptorPool of a frame, with room for any plan's recording. vkDestroyDescriptorPool with options.allocator
- * destroys it. On failure *pool is NULL and the message callback has the sentence. */
+/* Makes a pool for PellucidFrameOptions::descriptorPool, with room for the recording of any plan. The caller destroys the pool by
+ * vkDestroyDescriptorPool with the context's options.allocator. On failure *pool is NULL, and the context's `message` gets a sentence.
+ * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY, VULKAN. */
 PELLUCID_API PellucidResult pellucidCreateDescriptorPool(const PellucidContext* context, VkDescriptorPool* pool);
 
 /* One specialization constant. */
 typedef struct PellucidSpecialization {
-  uint32_t id, value; /* of 32 bits; booleans are 0 or 1 */
+  /* constant_id of the shader, and the constant's 32 bits. Booleans are 0 or 1. */
+  uint32_t id, value;
 } PellucidSpecialization;
 
-/* Description of a pipeline. */
+/* The shader of a pipeline. */
 typedef struct PellucidShader {
-  const uint32_t* words; /* SPIR-V; entry point "main", push constants PELLUCID_PUSH_CONSTANT_BYTES. Declares
-                            StorageImageWriteWithoutFormat */
-  size_t wordCount;      /* of words */
-  uint32_t constantCount; /* of constants */
-  const PellucidSpecialization* constants; /* of the pipeline */
+  /* SPIR-V with entry point "main" and PELLUCID_PUSH_CONSTANT_BYTES of push constants. It declares StorageImageWriteWithoutFormat. */
+  const uint32_t* words;
+  /* Number of words. */
+  size_t wordCount;
+  /* Number of constants. */
+  uint32_t constantCount;
+  /* Specialization constants of the pipeline. */
+  const PellucidSpecialization* constants;
 } PellucidShader;
 
-/* Ids of the specialization constants of all shaders that hold PellucidContextOptions::normalEncoding, lightTables, and uses with all
- * bits in place of 0. They are not among PellucidShader::constants. */
+/* Ids of specialization constants that depend on the context: PellucidContextOptions::normalEncoding, lightTables and uses. `uses` 0
+ * becomes all bits. PellucidShader::constants does not contain them. */
 enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
 
-/* What each pipeline is made of; shadowViewType as in PellucidContextOptions. */
-PELLUCID_API uint32_t pellucidGetPipelineCount(void); /* pipelines have the indices below it */
+/* Number of pipelines. A pipeline has an index below this number. */
+PELLUCID_API uint32_t pellucidGetPipelineCount(void);
+/* Writes the shader of a pipeline. shadowViewType: that of PellucidContextOptions. Errors: INVALID_ARGUMENT for an unknown pipeline or
+ * type. */
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
-                                              PellucidShader* shader); /* INVALID_ARGUMENT: no such pipeline or type */
+                                              PellucidShader* shader);
 
-/* Bit (1 << PellucidResource) of each screen-sized image that `features` cannot do without. */
+/* The screen-sized images that `features` (PellucidFeatureBits) need, as bits 1 << PellucidResource. */
 PELLUCID_API uint32_t pellucidGetRequiredInputs(uint32_t features);
 
-/* Zero-terminated JSON. *size is the room in `text` and becomes the bytes needed, terminator
- * included; `text` may be NULL to ask. */
+/* Writes a plan as zero-terminated JSON. *size is the room in `text` in bytes, and becomes the needed bytes with the terminator. With
+ * `text` NULL the function only sets *size. Errors: INVALID_ARGUMENT, BUFFER_TOO_SMALL. */
 PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
 
-PELLUCID_API const char* pellucidResourceName(uint32_t resource); /* "frontDepth", ... */
-PELLUCID_API const char* pellucidPipelineName(uint32_t pipeline); /* "unknown pipeline" beyond the last */
-PELLUCID_API const char* pellucidBindingName(uint32_t binding); /* as in the shaders' sources, "frontDepthImage"; "unknown binding" */
+/* Name of a PellucidResource: "frontDepth", ... or "unknown resource". */
+PELLUCID_API const char* pellucidResourceName(uint32_t resource);
+/* Name of a pipeline, or "unknown pipeline". */
+PELLUCID_API const char* pellucidPipelineName(uint32_t pipeline);
+/* Name of a binding in the shaders' sources: "frontDepthImage", ... or "unknown binding". */
+PELLUCID_API const char* pellucidBindingName(uint32_t binding);
 
 #ifdef __cplusplus
 }

@@ -1,11 +1,11 @@
-/* The decisions of the device in a frame that it has finished: groups that ran, blocks with material.
+/* Statistics: the decisions of the device in a finished frame, as workgroups that ran and blocks with material. pellucid.h does not
+ * include this header.
  *
- * The indirect commands of a plan lie in the caller's constants slice, where the device counted. Reading them
- * costs the device nothing, and needs neither a buffer nor a stall:
- * - after pellucidRecordPlan, a barrier from PELLUCID_STAGES / PELLUCID_WRITES to VK_PIPELINE_STAGE_HOST_BIT
- * / VK_ACCESS_HOST_READ_BIT goes into the command buffer;
- * - the slice is read once the fence of that submission has signaled, which a ring of slices waits for
- * anyway, and before constants are written to the slice again. pellucid.h does not include this header.
+ * The device writes the indirect commands of a plan into the caller's constants slice. The host reads them there, without a further
+ * buffer or stall:
+ * - Record a barrier after pellucidRecordPlan, from PELLUCID_STAGES / PELLUCID_WRITES to VK_PIPELINE_STAGE_HOST_BIT /
+ *   VK_ACCESS_HOST_READ_BIT.
+ * - Read the slice after the submission's fence has signaled, and before the next pellucidWriteConstants into the slice.
  */
 #ifndef PELLUCID_STATISTICS_H
 #define PELLUCID_STATISTICS_H
@@ -16,40 +16,49 @@
 extern "C" {
 #endif
 
-enum { PELLUCID_STATISTICS_BLOCK = 64 }; /* pixels a side of a block */
+/* Pixels a side of a block. */
+enum { PELLUCID_STATISTICS_BLOCK = 64 };
 
-/* Workgroups of a dispatch, or of several. */
+/* Workgroups of one or several dispatches. */
 typedef struct PellucidGroups {
-  uint64_t run;  /* how many ran, 0..most */
-  uint64_t most; /* how many there may be; all of them run where the device does not decide */
+  /* Workgroups that ran, 0..most. */
+  uint64_t run;
+  /* Largest possible number of workgroups. All of them run if the device does not decide. */
+  uint64_t most;
 } PellucidGroups;
 
-/* Written by pellucidReadStatistics. */
+/* Statistics of a frame. pellucidReadStatistics writes them. */
 typedef struct PellucidStatistics {
-  uint32_t structSize;    /* sizeof(PellucidStatistics), written by pellucidInitStatistics */
-  uint32_t dispatchCount; /* of dispatches, 0..PELLUCID_MAX_DISPATCHES */
-  PellucidGroups dispatches[PELLUCID_MAX_DISPATCHES]; /* those of the plan, in its order */
-  PellucidGroups blocks;      /* of PELLUCID_STATISTICS_BLOCK pixels a side, at multiples of that: those with material, of those
-                                 that the rect touches. Without lists all, and those within 8 pixels of the rect; 0 of 0
-                                 where nothing diffuses or is gathered */
-  PellucidGroups entryPoints; /* groups of 16 x 16 entry points, of all maps; 0 of 0 without a gather */
-  PellucidGroups probes;      /* groups of 8 x 8 cells of the gather; 0 of 0 without a gather */
-  uint32_t lists;         /* 1: the device listed where material is; 0: passes ran over the whole rect */
-  uint32_t activeLights;  /* PellucidPlan::activeLights: lights that can contribute */
-
+  /* sizeof(PellucidStatistics). pellucidInitStatistics writes it. */
+  uint32_t structSize;
+  /* Dispatches of the plan, 0..PELLUCID_MAX_DISPATCHES. */
+  uint32_t dispatchCount;
+  /* Workgroups of each dispatch, in the order of the plan. */
+  PellucidGroups dispatches[PELLUCID_MAX_DISPATCHES];
+  /* Blocks at multiples of PELLUCID_STATISTICS_BLOCK pixels. run: blocks with material. most: blocks that the rect touches. With
+   * lists 0 both count all blocks within 8 pixels of the rect. Both are 0 if nothing diffuses or is gathered. */
+  PellucidGroups blocks;
+  /* Groups of 16 x 16 entry points of all maps. Both are 0 without a gather. */
+  PellucidGroups entryPoints;
+  /* Groups of 8 x 8 cells of the gather. Both are 0 without a gather. */
+  PellucidGroups probes;
+  /* 1: the device listed the blocks with material. 0: passes ran over the whole rect. */
+  uint32_t lists;
+  /* PellucidPlan::activeLights: lights that can contribute. */
+  uint32_t activeLights;
 } PellucidStatistics;
 
-/* Zeros and the size, written into a struct of that many bytes. */
+/* Writes zeros into a struct of structSize bytes, and then its structSize. */
 PELLUCID_API void pellucidInitStatisticsSized(PellucidStatistics* statistics, size_t structSize);
-/* Zeros and the size. */
+/* Writes zeros and the struct's size. */
 static inline void pellucidInitStatistics(PellucidStatistics* s) { pellucidInitStatisticsSized(s, sizeof *s); }
 
-/* Reads what the device left in the slice of the last recording of `plan`. Pure. At most 12 bytes a dispatch are read, so that
- * the memory need not be HOST_CACHED. `mapped` and `size` of `constants` are used. `fn`, which may be NULL, gets a sentence for
- * each error; *statistics then stays as it was. Errors:
- * - INVALID_ARGUMENT: a null pointer, or a slice with more groups than there may be, which is another plan's;
+/* Reads the statistics of the last recording of `plan` from the slice. The function is pure. It reads at most 12 bytes a dispatch, so
+ * the memory need not be HOST_CACHED. Of `constants` it takes `mapped` and `size`. `fn` (optional) gets a sentence for each error, and
+ * *statistics then does not change. Errors:
+ * - INVALID_ARGUMENT: a null pointer, or a slice with impossible numbers of groups, because another plan wrote it;
  * - BUFFER_TOO_SMALL: constants->size is below plan->constantsSize;
- * - VERSION: a structSize that this library cannot write. */
+ * - VERSION: the library cannot write a struct of this structSize. */
 PELLUCID_API PellucidResult pellucidReadStatistics(const PellucidPlan* plan, const PellucidConstantsSlice* constants,
                                                    PellucidStatistics* statistics, PellucidMessageFn fn, void* user);
 

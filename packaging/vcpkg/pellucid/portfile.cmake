@@ -1,4 +1,4 @@
-# Builds the tree in which this port lies.
+# Builds the tree that contains this port.
 get_filename_component(source "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 vcpkg_check_features(OUT_FEATURE_OPTIONS features FEATURES material PELLUCID_BUILD_MATERIAL)
 vcpkg_cmake_configure(SOURCE_PATH "${source}" OPTIONS ${features}
