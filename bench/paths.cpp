@@ -22,7 +22,7 @@ using namespace harness;
 
 namespace {
 
-constexpr int kSize = 512, kFrames = 24;  // as docs/accuracy.md has them
+constexpr int kPathSize = 512, kPathFrames = 24;  // as docs/accuracy.md has them
 constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
 constexpr int kStill = 16;                // frames before a move
 constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
@@ -72,7 +72,7 @@ public:
     std::vector<double> frames;
     std::vector<Image> before;
     std::optional<Capture> last;
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kPathFrames; ++frame) {
       const CameraPath::Pose pose = path.at(frame);
       Capture capture = draw(pose.camera, pose.lights);
       std::optional<Reprojection> reprojection;
@@ -204,7 +204,7 @@ void timeAccumulation(Device& device, const Context& context, const FrameSource&
 std::map<std::string, std::vector<Plot>> measurePaths(Device& device, const Context& context, const FrameOptions& options,
                                                       int repeat, Report& report) {
   report.section("along paths: RMSE R G B, 99.9 % R G B", "paths");
-  const DrawnModel drawn = portrait(device, options, kSize);
+  const DrawnModel drawn = portrait(device, options, kPathSize);
   PathBench bench(device, context, drawn, report);
   bench.moved();
   std::map<std::string, std::vector<Plot>> plots;

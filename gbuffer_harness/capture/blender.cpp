@@ -14,7 +14,6 @@ namespace pellucid::harness {
 
 namespace {
 
-using nlohmann::json;
 
 // Blender prints matrices as four rows.
 glm::dmat4 matrix(const Field& field) {
@@ -28,13 +27,13 @@ glm::dmat4 matrix(const Field& field) {
   return m;
 }
 
-json columnMajor(const glm::dmat4& m) {
-  json numbers = json::array();
+nlohmann::json columnMajor(const glm::dmat4& m) {
+  nlohmann::json numbers = nlohmann::json::array();
   for (int i = 0; i < 16; ++i) numbers.push_back(m[i / 4][i % 4]);
   return numbers;
 }
 
-json vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+nlohmann::json vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 // Inverse of an object's matrix_world without its scale: lengths in view space are those of the scene.
 glm::dmat4 viewFromWorld(const Field& field) {
@@ -58,12 +57,12 @@ glm::dmat4 vulkanFromOpenGl() {
   return m;
 }
 
-json lightJson(const Field& field) {
+nlohmann::json lightJson(const Field& field) {
   field.allowKeys({"name", "type", "matrixWorld", "color", "energy", "spotSize", "spotBlend"});
   const std::size_t type = field["type"].choice({"SUN", "POINT", "SPOT"});
   const glm::dmat4 world = matrix(field["matrixWorld"]);
   const double energy = field["energy"].number(0, 1e30);
-  json light = {{"color", field["color"].numbers<3>()}};
+  nlohmann::json light = {{"color", field["color"].numbers<3>()}};
   constexpr const char* kTypes[] = {"directional", "point", "spot"};
   light["type"] = kTypes[type];
   // A sun's strength is its irradiance; of the others energy is the power of a full sphere, also of spots.
@@ -106,8 +105,8 @@ public:
   std::string name(const std::string& pass, const std::string& component) const {
     return layer_ + "." + pass + "." + component;
   }
-  json names(const std::string& pass, const char* components) const {
-    json result = json::array();
+  nlohmann::json names(const std::string& pass, const char* components) const {
+    nlohmann::json result = nlohmann::json::array();
     for (const char* c = components; *c; ++c) result.push_back(name(pass, std::string(1, *c)));
     return result;
   }
@@ -120,9 +119,9 @@ private:
 
 }  // namespace
 
-json blenderManifest(const std::filesystem::path& exr, const std::filesystem::path& scene,
+nlohmann::json blenderManifest(const std::filesystem::path& exr, const std::filesystem::path& scene,
                      const std::string& sceneText) {
-  const json document = parseJson(scene.string(), sceneText);
+  const nlohmann::json document = parseJson(scene.string(), sceneText);
   const Field root(scene.string(), document);
   if (root["blender"].number() != 1)
     root["blender"].fail("must be 1, the version of the script's file, is " + root["blender"].shown());
@@ -131,11 +130,11 @@ json blenderManifest(const std::filesystem::path& exr, const std::filesystem::pa
   camera.allowKeys({"matrixWorld", "projection"});
   const Passes passes(exr, root);
 
-  json manifest = {{"pellucid", 1}, {"metersPerUnit", root["metersPerUnit"].number()}};
+  nlohmann::json manifest = {{"pellucid", 1}, {"metersPerUnit", root["metersPerUnit"].number()}};
   manifest["camera"] = {{"clipFromView", columnMajor(vulkanFromOpenGl() * matrix(camera["projection"]))},
                         {"viewFromWorld", columnMajor(viewFromWorld(camera["matrixWorld"]))}};
   const std::string file = exr.filename().string();
-  json& buffers = manifest["buffers"];
+  nlohmann::json& buffers = manifest["buffers"];
   const std::string depth = passes.name("Depth", "Z");
   buffers["frontDepth"] = {{"file", file}, {"channel", depth}, {"encoding", "viewZ"}};
   buffers["irradiance"] = {
@@ -146,8 +145,8 @@ json blenderManifest(const std::filesystem::path& exr, const std::filesystem::pa
   if (const auto back = root.find("backDepth"))
     buffers["backDepth"] = {{"file", back->text()}, {"channel", depth}, {"encoding", "viewZ"}};
 
-  json map = {{"0", 0}};
-  manifest["materials"] = json::array();
+  nlohmann::json map = {{"0", 0}};
+  manifest["materials"] = nlohmann::json::array();
   for (const Field& material : root["materials"].items()) {
     material.allowKeys({"passIndex", "material"});
     const int passIndex = material["passIndex"].integer(1, 32767);
@@ -157,11 +156,11 @@ json blenderManifest(const std::filesystem::path& exr, const std::filesystem::pa
     map[std::to_string(passIndex)] = manifest["materials"].size();
   }
   // Without an index pass everything is the first material; the background has no depth.
-  json& material = buffers["material"] = {{"constant", {1}}};
+  nlohmann::json& material = buffers["material"] = {{"constant", {1}}};
   for (const char* pass : {"IndexOB", "IndexMA"})
     if (passes.has(pass, "X")) material = {{"file", file}, {"channel", passes.name(pass, "X")}, {"map", map}};
 
-  manifest["lights"] = json::array();
+  manifest["lights"] = nlohmann::json::array();
   for (const Field& light : root["lights"].items()) manifest["lights"].push_back(lightJson(light));
   return manifest;
 }

@@ -11,26 +11,25 @@
 
 namespace pellucid::harness {
 
-using nlohmann::json;
 
-json parseJson(const std::string& file, const std::string& text) {
+nlohmann::json parseJson(const std::string& file, const std::string& text) {
   // The library keeps the last of two equal keys; a manifest that says a thing twice is wrong.
   std::vector<std::set<std::string>> open;
-  const auto refuseTwins = [&](int, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) open.emplace_back();
-    if (event == json::parse_event_t::object_end) open.pop_back();
-    if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
+  const auto refuseTwins = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    if (event == nlohmann::json::parse_event_t::object_start) open.emplace_back();
+    if (event == nlohmann::json::parse_event_t::object_end) open.pop_back();
+    if (event == nlohmann::json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)
       throw InputError(file, parsed.get<std::string>(), "the key stands twice in one object");
     return true;
   };
   try {
-    return json::parse(text, refuseTwins);
-  } catch (const json::exception& error) {
+    return nlohmann::json::parse(text, refuseTwins);
+  } catch (const nlohmann::json::exception& error) {
     throw InputError(file, "", std::string("not valid JSON: ") + error.what());
   }
 }
 
-json readJson(const std::filesystem::path& path) {
+nlohmann::json readJson(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(file), {});
   if (!file) throw InputError(path.string(), "", "cannot be read");
@@ -45,7 +44,7 @@ void Field::failCount(std::size_t expected) const {
 
 std::string Field::shown() const {
   constexpr std::size_t kLongest = 60;
-  std::string text = value_->dump(-1, ' ', true, json::error_handler_t::replace);
+  std::string text = value_->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
 }
@@ -62,7 +61,7 @@ void Field::allowKeys(std::initializer_list<std::string_view> keys) const {
   }
 }
 
-Field Field::member(const std::string& key, const json& value) const {
+Field Field::member(const std::string& key, const nlohmann::json& value) const {
   return Field(file_, path_.empty() ? key : path_ + "." + key, value);
 }
 
@@ -102,8 +101,8 @@ double Field::number() const {
 
 double Field::number(double least, double most) const {
   const double result = fitted(number(), least, most);
-  if (result < least) fail("must be at least " + json(least).dump() + ", is " + shown());
-  if (result > most) fail("must be at most " + json(most).dump() + ", is " + shown());
+  if (result < least) fail("must be at least " + nlohmann::json(least).dump() + ", is " + shown());
+  if (result > most) fail("must be at most " + nlohmann::json(most).dump() + ", is " + shown());
   return result;
 }
 

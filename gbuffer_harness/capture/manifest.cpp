@@ -146,12 +146,12 @@ void refuseScaleOfDevice(const Field& field, PellucidDepthEncoding encoding) {
     scale->fail("a device depth has no unit; the matrix says what it means");
 }
 
-constexpr double kMost = 1e15, kMostSlope = 1e6;  // of the module
+constexpr double kLargest = 1e15, kMostSlope = 1e6;  // of the module
 constexpr NumberField<ShadowMap> kMapNumbers[] = {
-    {"depthBiasConstant", &ShadowMap::depthBiasConstant, -kMost, kMost},
+    {"depthBiasConstant", &ShadowMap::depthBiasConstant, -kLargest, kLargest},
     {"depthBiasSlope", &ShadowMap::depthBiasSlope, -kMostSlope, kMostSlope},
-    {"offsetLength", &ShadowMap::offsetLength, 0, kMost},
-    {"depthStep", &ShadowMap::depthStep, 0, kMost}};
+    {"offsetLength", &ShadowMap::offsetLength, 0, kLargest},
+    {"depthStep", &ShadowMap::depthStep, 0, kLargest}};
 
 ShadowMap readShadowMap(const Field& field) {
   field.allowKeys({"file", "part", "channel", "constant", "scale", "encoding", "clipFromWorld",

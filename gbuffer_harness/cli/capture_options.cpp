@@ -4,16 +4,18 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <numbers>
 
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
-#include "cli/light_option.h"
 #include "cli/numbers.h"
 #include "common/error.h"
 #include "raster/bodies.h"
 #include "raster/framing.h"
+#include "reference/path_tracer/visible_surface.h"
+#include "scene/model.h"
 
 namespace pellucid::harness {
 
@@ -26,10 +28,9 @@ constexpr const char *kModelGroup = "Models", *kSceneGroup = "Procedural scenes"
 // Fields that SceneParameters and RasterOptions have in common.
 template <class Parameters>
 void setCommon(const CaptureOptions& options, Parameters& to) {
-  const std::vector<std::string> size = split(options.size.empty() ? "512x512" : options.size, 'x');
-  if (size.size() != 2) throw UsageError("--size: \"" + options.size + "\" is not WIDTHxHEIGHT");
-  to.width = parseNumber<int>("--size", size[0]);
-  to.height = parseNumber<int>("--size", size[1]);
+  const auto [width, height] = parseSize("--size", options.size.empty() ? "512x512" : options.size);
+  to.width = width;
+  to.height = height;
   to.infiniteFar = options.infiniteFar;
   to.normalsInViewSpace = options.viewNormals;
   to.reversedZ = options.reversedZ.value_or(to.reversedZ);
@@ -52,24 +53,21 @@ PellucidLightType parseLightType(const std::string& text) {
 ModelCamera chooseCamera(const CaptureOptions& options, const Model& model, const RasterOptions& raster,
                          const std::vector<double>& turns) {
   const std::vector<ModelCamera>& cameras = model.cameras;
-  if (options.camera.empty() && !cameras.empty()) return cameras.front();
-  if (options.camera.empty() || options.camera == "auto") {
+  const std::string& wanted = options.gltf.camera;
+  if (wanted.empty() && !cameras.empty()) return cameras.front();
+  if (wanted.empty() || wanted == "auto") {
     Vector3 toCamera = {0, 0, 1};
-    if (!options.view.empty()) {
-      const std::vector<std::string> parts = split(options.view, ',');
-      if (parts.size() != 3) throw UsageError("--view: \"" + options.view + "\" is not X,Y,Z");
-      for (std::size_t i = 0; i < 3; ++i) toCamera[i] = parseNumber<double>("--view", parts[i]);
-    }
+    if (!options.view.empty()) toCamera = parseNumbers<3>("--view", options.view, "X,Y,Z");
     return frameModel(model, toCamera, options.verticalFov * std::numbers::pi / 180,
                       static_cast<double>(raster.width) / raster.height, options.orthographic.value_or(false),
                       turns);
   }
   std::string names = "auto";
   for (const ModelCamera& camera : cameras) {
-    if (camera.name == options.camera) return camera;
+    if (camera.name == wanted) return camera;
     names += ", " + camera.name;
   }
-  throw UsageError("--camera: there is no \"" + options.camera + "\" but " + names);
+  throw UsageError("--camera: there is no \"" + wanted + "\" but " + names);
 }
 
 void refuseOptionsOf(const Command& command, const char* group, const char* needs) {
@@ -77,27 +75,8 @@ void refuseOptionsOf(const Command& command, const char* group, const char* need
     if (option.group == group) throw UsageError(option.name + ": needs " + needs);
 }
 
-std::array<double, 2> parsePair(const char* option, const std::string& text, const char* syntax) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() != 2) throw UsageError(std::string(option) + ": \"" + text + "\" is not " + syntax);
-  return {parseNumber<double>(option, parts[0]), parseNumber<double>(option, parts[1])};
-}
-
-ShadowDrawing shadowDrawing(const CaptureOptions& options) {
-  ShadowDrawing drawing;
-  drawing.cull = options.shadowCull;
-  drawing.bits = options.shadowBits;
-  drawing.normalOffset = options.shadowNormalOffset;
-  drawing.cascades = options.shadowCascades;
-  drawing.filter = options.shadowFilter;
-  drawing.placement = options.shadowAtlas   ? MapPlacement::Atlas
-                      : options.shadowArray ? MapPlacement::Array
-                                            : MapPlacement::Separate;
-  if (options.shadowDepthBias.empty()) return drawing;
-  const auto [constant, slope] = parsePair("--shadow-depth-bias", options.shadowDepthBias, "CONSTANT,SLOPE");
-  drawing.depthBiasConstant = constant;
-  drawing.depthBiasSlope = slope;
-  return drawing;
+double distance(const Vector3& a, const Vector3& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 void addCommonOptions(const Command& command, CaptureOptions& options) {
@@ -135,46 +114,47 @@ void addCommonOptions(const Command& command, CaptureOptions& options) {
 
 void addModelOptions(const Command& command, CaptureOptions& options, SceneUse use) {
   const Command models = command.group(kModelGroup);
+  ShadowDrawing& shadow = options.raster.shadow;
   command.option("model", options.model, "glTF file, .glb or .gltf");
   models.option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit");
-  const CommandOption time =
-      models
-          .option("--time", options.time, "seconds into the file's animation (default: nodes as they stand)")
-          .notNegative();
-  models.option("--animation", options.animation, "name or number from 0 (default: the first)").needs(time);
+  const CommandOption time = models
+                                 .option("--time", options.gltf.time,
+                                         "seconds into the file's animation (default: nodes as they stand)")
+                                 .notNegative();
+  models.option("--animation", options.gltf.animation, "name or number from 0 (default: the first)")
+      .needs(time);
   models.flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material");
-  models.option("--camera", options.camera, "name of one of the file's cameras, or auto");
+  models.option("--camera", options.gltf.camera, "name of one of the file's cameras, or auto");
   models.option("--view", options.view, "X,Y,Z: direction from the center to the auto camera");
   models.option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
       .range(1.0, 170.0);
-  models.choice("--back", options.backFace,
+  models.choice("--back", options.raster.backFace,
                 {{"nearest", BackFace::Nearest}, {"farthest", BackFace::Farthest}},
                 "which back face behind the front: nearest or farthest");
-  models
-      .option("--point-maps", options.pointMaps,
-              "shadow maps of a point light: 1, 6 or auto, 6 where 1 cannot see the whole model")
-      .oneOf({"auto", "1", "6"});
-  models.option("--simplify", options.simplify,
+  models.choice("--point-maps", options.raster.pointMaps,
+                {{"auto", PointMaps::Auto}, {"1", PointMaps::One}, {"6", PointMaps::Six}},
+                "shadow maps of a point light: 1, 6 or auto (default), 6 where 1 cannot see the whole model");
+  models.option("--simplify", options.raster.simplify,
                 "share of the triangles that back depth and shadow maps are drawn with, above 0 (default 1)");
-  models.choice("--shadow-cull", options.shadowCull,
+  models.choice("--shadow-cull", shadow.cull,
                 {{"none", MapCull::None}, {"back", MapCull::Back}, {"front", MapCull::Front}},
                 "faces that shadow maps leave out: none (default), back or front");
   models.option("--shadow-depth-bias", options.shadowDepthBias,
                 "CONSTANT,SLOPE: factors of vkCmdSetDepthBias, away from the light");
-  models.option("--shadow-bits", options.shadowBits, "of a shadow map's depth: 16, 24 or 32, a float")
+  models.option("--shadow-bits", shadow.bits, "of a shadow map's depth: 16, 24 or 32, a float")
       .oneOf({16, 24, 32});
   models
       .option(
-          "--shadow-normal-offset", options.shadowNormalOffset,
+          "--shadow-normal-offset", shadow.normalOffset,
           "texels times 1 - cosine to the light by which a map's vertices move inward along their normals")
       .range(0.0, 100.0);
   models
-      .option("--shadow-cascades", options.shadowCascades,
+      .option("--shadow-cascades", shadow.cascades,
               "maps of a directional light that follow the camera; 0: one around the model")
       .range(0, 6);
   models
       .option(
-          "--shadow-filter", options.shadowFilter,
+          "--shadow-filter", shadow.filter,
           "taps across, odd, with which the irradiance filters these maps; 0: it has plain maps of its own")
       .oneOf({0, 1, 3, 5, 7, 9, 11, 13, 15});
   models.option(
@@ -278,18 +258,71 @@ std::optional<Environment> environment(const CaptureOptions& options) {
     throw UsageError("--environment: \"" + options.environment + "\" is not " + kEnvironmentSyntax);
   };
   const auto color = [&](const std::string& text) {
-    const std::vector<std::string> numbers = split(text, ',');
-    if (numbers.size() != 3) fail();
-    std::array<double, 3> result;
-    for (std::size_t c = 0; c < 3; ++c) {
-      result[c] = parseNumber<double>("--environment", numbers[c]);
-      if (!(result[c] >= 0)) fail();
-    }
+    const std::array<double, 3> result = parseNumbers<3>("--environment", text, kEnvironmentSyntax);
+    if (!std::all_of(result.begin(), result.end(), [](double channel) { return channel >= 0; })) fail();
     return result;
   };
   if (parts[0] == "uniform" && parts.size() == 2) return Environment{color(parts[1]), color(parts[1])};
   if (parts[0] != "gradient" || parts.size() != 3) fail();
   return Environment{color(parts[1]), color(parts[2])};
+}
+
+double parseUnit(const std::string& text) {
+  if (text == "mm") return 0.001;
+  if (text == "cm") return 0.01;
+  if (text == "m") return 1;
+  const double meters = parseNumber<double>("--unit", text);
+  if (!(meters >= 1e-9 && meters <= 1e9))
+    throw UsageError("--unit: \"" + text + "\" is not a length from 1e-9 to 1e9 meters");
+  return meters;
+}
+
+Light parseLight(const std::string& text, const Model& model, const ModelCamera& camera) {
+  Light light;
+  if (text == kBackLight || text == kFrontLight) {
+    // Columns of viewFromWorld's transpose are the view's axes in the world; +z is towards the camera.
+    const Matrix& m = camera.viewFromWorld;
+    const double sign = text == kBackLight ? 1 : -1;
+    for (std::size_t i = 0; i < 3; ++i) light.direction[i] = sign * m[4 * i + 2] - 0.4 * m[4 * i + 1];
+    return light;
+  }
+  std::vector<std::string> parts = split(text, ':');
+  const bool sphere = parts[0] == "sphere" && parts.size() >= 3;
+  if (sphere) {
+    light.radius = parseNumber<double>("--light", parts[2]);
+    if (!(light.radius > 0)) throw UsageError("--light: \"" + text + "\": the radius is not above 0");
+    parts.erase(parts.begin() + 2);
+  }
+  const bool known = parts[0] == "directional" || parts[0] == "point" || parts[0] == "spot" || sphere;
+  if (!known || parts.size() > 3 || parts.size() < 2)
+    throw UsageError("--light: \"" + text + "\" is not " + kLightSyntax);
+  Vector3 where = parseNumbers<3>("--light", parts[1], kLightSyntax);
+  if (parts[0] == "directional") {
+    light.direction = where;
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) where[i] -= model.origin[i];
+    const Bounds bounds = boundsOf(model);
+    const double away = distance(where, bounds.center);
+    light.type = parts[0] == "spot" ? PELLUCID_LIGHT_SPOT : PELLUCID_LIGHT_POINT;
+    light.position = where;
+    light.intensity = away * away;
+    if (away == 0 && parts.size() < 3)
+      throw UsageError("--light: \"" + text +
+                       "\" stands at the center, where no intensity makes 1 arrive; add :I");
+    if (light.radius > 0 && away < bounds.radius + light.radius)
+      throw UsageError("--light: \"" + text + "\" reaches into the model's surroundings");
+    if (light.type == PELLUCID_LIGHT_SPOT) {
+      if (away == 0) throw UsageError("--light: \"" + text + "\" stands at the center it looks at");
+      for (std::size_t i = 0; i < 3; ++i) light.direction[i] = (bounds.center[i] - where[i]) / away;
+      light.outerConeAngle = bounds.radius < away ? std::asin(bounds.radius / away) : std::numbers::pi / 4;
+      light.innerConeAngle = 0.8 * light.outerConeAngle;
+    }
+  }
+  if (parts.size() == 3) light.intensity = parseNumber<double>("--light", parts[2]);
+  fitLight(light, [&](const char* key, const std::string& sentence) {
+    throw UsageError("--light: \"" + text + "\": " + key + " " + sentence);
+  });
+  return light;
 }
 
 namespace {
@@ -314,24 +347,24 @@ void separateBodies(CaptureModel& model) {
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns,
                           const std::vector<std::string>& lightsOfNone) {
   CaptureModel result;
+  result.raster = options.raster;
   setCommon(options, result.raster);
-  result.raster.backFace = options.backFace;
-  result.raster.pointMaps = options.pointMaps == "1"   ? PointMaps::One
-                            : options.pointMaps == "6" ? PointMaps::Six
-                                                       : PointMaps::Auto;
-  result.raster.shadow = shadowDrawing(options);
-  if (!options.jitter.empty()) result.raster.jitter = parsePair("--jitter", options.jitter, "X,Y");
-  result.raster.simplify = options.simplify;
-  GltfOptions gltf;
+  ShadowDrawing& shadow = result.raster.shadow;
+  if (options.shadowAtlas) shadow.placement = MapPlacement::Atlas;
+  if (options.shadowArray) shadow.placement = MapPlacement::Array;
+  if (!options.shadowDepthBias.empty()) {
+    const auto bias = parseNumbers<2>("--shadow-depth-bias", options.shadowDepthBias, "CONSTANT,SLOPE");
+    shadow.depthBiasConstant = bias[0];
+    shadow.depthBiasSlope = bias[1];
+  }
+  if (!options.jitter.empty()) result.raster.jitter = parseNumbers<2>("--jitter", options.jitter, "X,Y");
+  GltfOptions gltf = options.gltf;
   gltf.metersPerUnit = parseUnit(options.unit);
   for (const std::string& text : options.presets) {
     const Assignment set = parseAssignment("--material", text);
     gltf.presets[set.key] = set.value;
   }
   gltf.ior = options.ior.value_or(0);
-  gltf.time = options.time;
-  gltf.animation = options.animation;
-  gltf.camera = options.camera;
   GltfScene scene = loadGltf(options.model, gltf);
   result.model = std::move(scene.model);
   result.notes = std::move(scene.notes);
@@ -357,6 +390,62 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
   for (const std::string& light : lights)
     result.model.lights.push_back(parseLight(light, result.model, result.camera));
   return result;
+}
+
+namespace {
+
+// Noise of some 2 % in half shadow, which diffusion averages further.
+constexpr int kSamples = 512;
+// Transmission blurs them.
+constexpr int kHiddenSamples = 128;
+
+bool hasRadius(const Light& light) { return light.radius > 0; }
+
+bool needsTracing(const std::vector<Light>& lights, const std::optional<Environment>& environment) {
+  return environment || std::any_of(lights.begin(), lights.end(), hasRadius);
+}
+
+}  // namespace
+
+Capture captureScene(const SceneParameters& scene, const CaptureOptions& options) {
+  Capture capture = makeScene(scene);
+  setIor(capture.materials, options);
+  if (const std::optional<Environment> sky = environment(options)) {
+    const SceneModel model = sceneModel(scene);
+    addTracedLight(capture, *reference::makeSolidScene(model), sky);
+  }
+  return capture;
+}
+
+RasterResult captureScene(Device& device, const Model& model, const ModelCamera& camera,
+                          const RasterOptions& raster, const std::optional<Environment>& environment) {
+  refuseEnclosedLights(model);
+  RasterResult result = rasterize(device, model, camera, raster);
+  if (!needsTracing(model.lights, environment)) return result;
+  const Image drawn = result.capture.irradiance;
+  addTracedLight(result.capture, *reference::makeMeshScene(model), environment);
+  for (std::size_t i = 0; i < result.reflectedShare.data.size(); ++i) {
+    float& irradiance = result.capture.irradiance.data[i];
+    irradiance = drawn.data[i] + (irradiance - drawn.data[i]) * result.reflectedShare.data[i];
+  }
+  return result;
+}
+
+void addTracedLight(Capture& capture, const reference::TraceScene& scene,
+                    const std::optional<Environment>& environment) {
+  if (!needsTracing(capture.lights, environment)) return;
+  if (environment) capture.environment = environment->harmonics();
+  reference::Emitters emitters;
+  emitters.environment = environment;
+  std::copy_if(capture.lights.begin(), capture.lights.end(), std::back_inserter(emitters.lights), hasRadius);
+  for (Light& light : emitters.lights) light.shadowMaps.clear();
+  const reference::VisibleSurface visible = reference::visibleSurface(capture, scene);
+  const Image added = reference::tracedIrradiance(visible, scene, emitters, kSamples);
+  for (std::size_t i = 0; i < added.data.size(); ++i) capture.irradiance.data[i] += added.data[i];
+  if (!environment || capture.backDepth.image.empty()) return;
+  emitters.lights.clear();  // they come through by their maps
+  capture.hiddenIrradiance = reference::tracedIrradiance(reference::hiddenSurface(capture, scene, visible),
+                                                         scene, emitters, kHiddenSamples);
 }
 
 }  // namespace pellucid::harness

@@ -7,13 +7,21 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/light_option.h"
 #include "gltf/gltf.h"
 #include "raster/raster.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
 
 namespace pellucid::harness {
+
+namespace reference {
+class TraceScene;
+}
+
+inline constexpr const char* kBackLight = "back";
+inline constexpr const char* kFrontLight = "front";
+inline constexpr const char* kLightSyntax =
+    "directional:X,Y,Z[:E], point:X,Y,Z[:I], spot:X,Y,Z[:I], sphere:X,Y,Z:RADIUS[:I], back or front";
 
 // As given. Options of both kinds of scene stand before the two; absent ones have each kind's own default.
 struct CaptureOptions {
@@ -23,27 +31,30 @@ struct CaptureOptions {
   std::optional<PellucidDepthEncoding> depth, shadowDepth;
   std::optional<int> shadowSize;
   std::vector<std::string> lights;  // of a model: kLightSyntax; empty: the file's, and "back" without any
+  std::vector<std::string> presets;
+  std::optional<double> ior;  // of all materials
+  std::string environment;    // "": none
 
   SceneParameters scene;
   std::vector<std::string> set;
 
-  std::string model, unit = "m", camera, view, pointMaps = "auto";
-  std::vector<std::string> presets;
-  std::optional<double> time;  // of the animation, seconds
-  std::string animation;
+  std::string model, unit = "m", view;
+  GltfOptions gltf;
+  RasterOptions raster;
   double verticalFov = 30;  // of the auto camera, degrees
   bool fillHoles = false;
-  double simplify = 1;
-  std::optional<double> ior;  // of all materials
-  std::string environment;    // "": none
-  BackFace backFace = BackFace::Nearest;
-  MapCull shadowCull = MapCull::None;
-  std::string shadowDepthBias;  // "": none
-  int shadowBits = 32, shadowCascades = 0, shadowFilter = 0;
-  double shadowNormalOffset = 0;  // texels
-  std::string jitter;             // "": none
+  std::string shadowDepthBias, jitter;  // "": none
   bool shadowAtlas = false, shadowArray = false;
 };
+
+// A light of the command line. X,Y,Z: direction of travel of a directional light, else the position in the
+// file's world; spots look at the model's center. E: irradiance at normal incidence, I: intensity, both of
+// KHR_lights_punctual; by default 1 arrives at the model's center. A sphere is a point light with a radius.
+// "back" and "front": directional, from above, towards `camera` and away from it. Throws UsageError.
+Light parseLight(const std::string& text, const Model& model, const ModelCamera& camera);
+
+// Meters of "mm", "cm", "m" or a number. Throws UsageError.
+double parseUnit(const std::string& text);
 
 // A glTF file made ready for rasterize(): its lights are those to capture with.
 struct CaptureModel {
@@ -91,5 +102,17 @@ std::optional<Environment> environment(const CaptureOptions& options);
 // InputError.
 CaptureModel captureModel(const CaptureOptions& options, const std::vector<double>& turns = {0},
                           const std::vector<std::string>& lightsOfNone = {kBackLight});
+
+// The capture of a procedural scene with its --ior and --environment. Throws as makeScene() does.
+Capture captureScene(const SceneParameters& scene, const CaptureOptions& options);
+
+// The capture that rasterize() draws, and on top of it the irradiance of the environment and of lights that
+// have a radius, traced by rays.
+RasterResult captureScene(Device& device, const Model& model, const ModelCamera& camera,
+                          const RasterOptions& raster, const std::optional<Environment>& environment);
+
+// Adds that irradiance to a capture of the traced scene; nothing where it has neither.
+void addTracedLight(Capture& capture, const reference::TraceScene& scene,
+                    const std::optional<Environment>& environment);
 
 }  // namespace pellucid::harness

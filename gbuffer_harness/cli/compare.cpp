@@ -16,11 +16,10 @@
 #include "cli/commands.h"
 #include "cli/limits.h"
 #include "cli/metrics_json.h"
-#include "cli/preset.h"
+#include "cli/settings.h"
 #include "common/error.h"
 #include "common/png.h"
-#include "metrics/isolated.h"
-#include "metrics/ratio_map.h"
+#include "metrics/eye.h"
 #include "metrics/spots.h"
 
 namespace pellucid::harness {
@@ -108,7 +107,7 @@ void writeDifference(const std::filesystem::path& path, const Image& a, const Im
     std::nth_element(values.begin(), rank, values.end());
     white = *rank;
   }
-  const Image panels = sideBySide({&a, &b, &difference});
+  const Image panels = contactSheet({&a, &b, &difference}, 3);
   writePng(path, panels.width, panels.height, toSrgb(panels, white > 0 ? 1 / white : 1));
 }
 

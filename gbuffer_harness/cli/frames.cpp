@@ -11,13 +11,17 @@ namespace {
 constexpr int kLastFrame = 9999999;
 constexpr std::size_t kMostFrames = 1000000;
 
+std::optional<int> frameIn(const std::string& text) {
+  const std::optional<int> frame = numberIn<int>(text);
+  return frame && *frame >= 0 && *frame <= kLastFrame ? frame : std::nullopt;
+}
+
 int parseFrame(const std::string& all, const std::string& text) {
-  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-  const int frame = digits && text.size() <= 7 ? parseNumber<int>("--frames", text) : -1;
-  if (frame < 0)
+  const std::optional<int> frame = frameIn(text);
+  if (!frame)
     throw UsageError("--frames: \"" + text + "\" in \"" + all + "\" is not a frame from 0 to " +
                      std::to_string(kLastFrame));
-  return frame;
+  return *frame;
 }
 
 }  // namespace
@@ -80,11 +84,8 @@ std::vector<int> FramePattern::existing() const {
     const std::string name = entry.path().filename().string();
     if (name.size() < before_.size() + after_.size() || !name.starts_with(before_) || !name.ends_with(after_))
       continue;
-    const std::string number = name.substr(before_.size(), name.size() - before_.size() - after_.size());
-    const bool digits = !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
-    if (!digits || number.size() > 7) continue;
-    const int frame = parseNumber<int>("--frames", number);
-    if ((*this)(frame).filename() == name) frames.push_back(frame);
+    const auto frame = frameIn(name.substr(before_.size(), name.size() - before_.size() - after_.size()));
+    if (frame && (*this)(*frame).filename() == name) frames.push_back(*frame);
   }
   std::sort(frames.begin(), frames.end());
   return frames;

@@ -13,9 +13,9 @@
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
+#include "cli/capture_checks.h"
 #include "cli/commands.h"
-#include "cli/preset.h"
-#include "cli/thin_bodies.h"
+#include "cli/settings.h"
 #include "reference/camera.h"
 #include "replay/frame.h"
 

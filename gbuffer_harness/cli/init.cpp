@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/capture_options.h"
 #include "cli/commands.h"
-#include "cli/light_option.h"
 #include "cli/numbers.h"
 #include "common/error.h"
 #include "common/whole_file.h"
@@ -24,20 +24,12 @@ struct Options {
   std::map<Role, std::string> roles;
 };
 
-Vector3 vectorOf(const char* option, const std::string& text) {
-  const std::vector<std::string> parts = split(text, ',');
-  if (parts.size() != 3) throw UsageError(std::string(option) + ": \"" + text + "\" is not X,Y,Z");
-  Vector3 result;
-  for (std::size_t i = 0; i < 3; ++i) result[i] = parseNumber<double>(option, parts[i]);
-  return result;
-}
-
 Json lightOf(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   const bool isPoint = parts[0] == "point";
   if ((!isPoint && parts[0] != "directional") || parts.size() < (isPoint ? 3 : 2) || parts.size() > 3)
     throw UsageError("--light: \"" + text + "\" is not " + kLightWords);
-  const Vector3 where = vectorOf("--light", parts[1]);
+  const Vector3 where = parseNumbers<3>("--light", parts[1], "X,Y,Z");
   const double intensity = parts.size() == 3 ? parseNumber<double>("--light", parts[2]) : 1;
   if (!(intensity >= 0 && intensity < 1e30))
     throw UsageError("--light: \"" + text + "\": the intensity is not >= 0");
@@ -48,9 +40,9 @@ InitWords wordsOf(const Options& options) {
   InitWords words = options.words;
   if (!options.unit.empty()) words.metersPerUnit = parseUnit(options.unit);
   if (!options.depth.empty()) words.deviceDepth = options.depth == "device";
-  if (!options.eye.empty()) words.camera.eye = vectorOf("--eye", options.eye);
-  if (!options.target.empty()) words.camera.target = vectorOf("--target", options.target);
-  if (!options.up.empty()) words.camera.up = vectorOf("--up", options.up);
+  if (!options.eye.empty()) words.camera.eye = parseNumbers<3>("--eye", options.eye, "X,Y,Z");
+  if (!options.target.empty()) words.camera.target = parseNumbers<3>("--target", options.target, "X,Y,Z");
+  if (!options.up.empty()) words.camera.up = parseNumbers<3>("--up", options.up, "X,Y,Z");
   for (const auto& [role, name] : options.roles)
     if (!name.empty()) words.roles[role] = name;
   for (const std::string& light : options.lights) words.lights.push_back(lightOf(light));

@@ -3,9 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "metrics/eye.h"
 #include "metrics/flicker.h"
-#include "metrics/flip.h"
-#include "metrics/tint.h"
 
 namespace pellucid::harness {
 

@@ -5,22 +5,11 @@
 
 #include "capture/material.h"
 #include "capture/read.h"
+#include "cli/capture_checks.h"
 #include "cli/commands.h"
-#include "cli/nearest_distance.h"
-#include "cli/plan_text.h"
-#include "cli/preset.h"
 #include "cli/settings.h"
 
 namespace pellucid::harness {
-
-std::string planJson(const PellucidPlan& plan) {
-  size_t size = 0;
-  pellucidPlanToJson(&plan, nullptr, &size);
-  std::string text(size, '\0');
-  pellucidPlanToJson(&plan, text.data(), &size);
-  text.pop_back();  // the terminator
-  return text;
-}
 
 void addPlanCommand(const Command& app) {
   struct Options {

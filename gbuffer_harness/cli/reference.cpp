@@ -12,8 +12,6 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
-#include "cli/output.h"
-#include "cli/preset.h"
 #include "cli/settings.h"
 #include "common/error.h"
 

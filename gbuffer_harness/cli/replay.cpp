@@ -9,20 +9,15 @@
 #include <string>
 
 #include "capture/exr.h"
-#include "capture/read.h"
-#include "capture/manifest_parts.h"
 #include "capture/manifest.h"
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
+#include "capture/read.h"
+#include "cli/capture_checks.h"
 #include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
-#include "cli/nearest_distance.h"
-#include "cli/output.h"
-#include "cli/plan_text.h"
-#include "cli/preset.h"
 #include "cli/settings.h"
-#include "cli/thin_bodies.h"
-#include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/png.h"
@@ -119,7 +114,7 @@ void writeTriptych(const Options& options, const Capture& capture,
     through.data[i] = std::max(through.data[i] - before.data[i], 0.0f);
   multiply(through, capture.albedo);
   multiply(before, capture.albedo);
-  const Image picture = sideBySide({&before, &through, &after});
+  const Image picture = contactSheet({&before, &through, &after}, 3);
   writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure, options.toneMap));
   std::printf("wrote %s (before | translucency | after)\n", options.triptych.c_str());
 }

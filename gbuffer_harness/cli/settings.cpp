@@ -6,6 +6,7 @@
 
 #include "capture/json_field.h"
 #include "common/error.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 namespace {
@@ -130,6 +131,30 @@ std::string SettingsOptions::text() const {
   std::string all = "mode=" + mode;
   for (const std::string& s : assignments()) all += " " + s;
   return all;
+}
+
+void addPresetOption(const Command& command, ManifestPreset& preset) {
+  command.choice(
+      "--preset", preset, {{"blender", ManifestPreset::Blender}},
+      "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)");
+}
+
+std::string extensionOf(const std::filesystem::path& path) { return lower(path.extension().string()); }
+
+void requireExr(const std::string& option, const std::filesystem::path& path) {
+  const std::string extension = extensionOf(path);
+  if (!extension.empty() && extension != ".exr")
+    throw UsageError(option + ": \"" + path.string() + "\" is written as EXR and cannot be called " +
+                     extension);
+}
+
+std::string planJson(const PellucidPlan& plan) {
+  size_t size = 0;
+  pellucidPlanToJson(&plan, nullptr, &size);
+  std::string text(size, '\0');
+  pellucidPlanToJson(&plan, text.data(), &size);
+  text.pop_back();  // the terminator
+  return text;
 }
 
 }  // namespace pellucid::harness

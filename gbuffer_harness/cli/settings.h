@@ -1,10 +1,13 @@
-// Options that say how a capture is run; shared by replay and plan.
+// Options that commands share: how a capture is read and run, and how results are written.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "capture/manifest.h"
 #include "cli/command.h"
+#include "common/tone_map.h"
 #include "replay/frame.h"
 
 namespace pellucid::harness {
@@ -39,5 +42,26 @@ std::string debugOption(const ReplaySettings& settings);
 // refuses the frame.
 void resolveGather(ReplaySettings& settings, const Capture& capture,
                    const std::vector<PellucidMaterial>& materials);
+
+// --preset of the commands that read captures.
+void addPresetOption(const Command& command, ManifestPreset& preset);
+
+// --tonemap of the commands that write pictures. `map`: a ToneMap, or an optional one, which stays empty
+// without the option.
+template <class Map>
+void addToneMapOption(const Command& command, Map& map) {
+  command.word(
+      "--tonemap", toneMapNames(), [&map](std::size_t index) { map = static_cast<ToneMap>(index); },
+      "of PNGs: none (default), agx (Sobotka) or aces (Narkowicz's fit); exposure comes before");
+}
+
+// In lower case.
+std::string extensionOf(const std::filesystem::path& path);
+
+// Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
+// that says it is something else.
+void requireExr(const std::string& option, const std::filesystem::path& path);
+
+std::string planJson(const PellucidPlan& plan);
 
 }  // namespace pellucid::harness

@@ -8,15 +8,13 @@
 #include "capture/exr.h"
 #include "capture/material.h"
 #include "capture/read.h"
+#include "cli/capture_checks.h"
 #include "cli/commands.h"
-#include "cli/nearest_distance.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
-#include "cli/tone_map_option.h"
 #include "common/error.h"
 #include "common/png.h"
 #include "common/progress.h"
-#include "common/text.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {

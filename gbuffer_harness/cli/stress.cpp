@@ -1,20 +1,23 @@
 // `pellucid stress`: random frames through the module, and what must hold for each.
-#include "stress/stress.h"
+#include "cli/stress.h"
 
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/command.h"
+#include "capture/write.h"
 #include "cli/commands.h"
-#include "cli/stress_failure.h"
+#include "cli/settings.h"
 #include "common/error.h"
 #include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "stress/results.h"
+#include "stress/stress.h"
 
 namespace pellucid::harness {
 namespace {
@@ -91,15 +94,17 @@ Json toJson(const stress::Difference& d) {
           {"worstFrame", d.worstFrame}};
 }
 
+template <class... Cell>
+void printRow(const std::string& name, const Cell&... cells) {
+  std::cout << std::left << std::setw(18) << name << std::right << std::setprecision(2);
+  ((std::cout << std::setw(11) << cells), ...);
+  std::cout << '\n';
+}
+
 void print(const stress::ResultsReader& other) {
-  std::printf("%-10s %8s %10s %12s %12s %12s %10s %8s\n", "difference", "frames", "same bits", "values",
-              "above 1e-3", "above 1e-2", "worst", "frame");
+  printRow("difference", "frames", "same bits", "values", "above 1e-3", "above 1e-2", "worst", "frame");
   for (const auto& [name, d] : {std::pair{"tame", &other.tame}, std::pair{"wild", &other.wild}})
-    std::printf("%-10s %8llu %10llu %12llu %12llu %12llu %10.2g %8llu\n", name,
-                static_cast<unsigned long long>(d->frames), static_cast<unsigned long long>(d->sameBits),
-                static_cast<unsigned long long>(d->values), static_cast<unsigned long long>(d->above3),
-                static_cast<unsigned long long>(d->above2), d->worst.value,
-                static_cast<unsigned long long>(d->worstFrame));
+    printRow(name, d->frames, d->sameBits, d->values, d->above3, d->above2, d->worst.value, d->worstFrame);
 }
 
 Json toJson(const StressOptions& options, const StressResult& result) {
@@ -114,25 +119,15 @@ Json toJson(const StressOptions& options, const StressResult& result) {
 }
 
 void print(const StressOptions& options, const StressResult& result) {
-  std::printf(
-      "%s\nseed %llu, frames %llu to %llu, %llu recordings, %llu pixels, %.1f s; refused: %llu tame, %llu "
-      "wild\n",
-      result.device.c_str(), static_cast<unsigned long long>(options.seed),
-      static_cast<unsigned long long>(options.first),
-      static_cast<unsigned long long>(options.first + result.frames) - 1,
-      static_cast<unsigned long long>(result.recordings), static_cast<unsigned long long>(result.pixels),
-      result.seconds, static_cast<unsigned long long>(result.refusedTame),
-      static_cast<unsigned long long>(result.refusedWild));
-  std::printf("%-18s %9s %9s %9s %9s  %9s %9s %9s %9s\n", "check", "tame", "violated", "worst", "frame",
-              "wild", "violated", "worst", "frame");
-  for (const stress::CheckResult& check : result.checks) {
-    std::printf("%-18s", check.name.c_str());
-    for (const stress::CheckCount* c : {&check.tame, &check.wild})
-      std::printf(" %9llu %9llu %9.2g %9llu ", static_cast<unsigned long long>(c->done),
-                  static_cast<unsigned long long>(c->violations), c->worst.value,
-                  static_cast<unsigned long long>(c->worstFrame));
-    std::printf("\n");
-  }
+  std::cout << result.device << "\nseed " << options.seed << ", frames " << options.first << " to "
+            << options.first + result.frames - 1 << ", " << result.recordings << " recordings, "
+            << result.pixels << " pixels, " << std::fixed << std::setprecision(1) << result.seconds
+            << std::defaultfloat << " s; refused: " << result.refusedTame << " tame, " << result.refusedWild
+            << " wild\n";
+  printRow("check", "tame", "violated", "worst", "frame", "wild", "violated", "worst", "frame");
+  for (const auto& [name, tame, wild] : result.checks)
+    printRow(name, tame.done, tame.violations, tame.worst.value, tame.worstFrame, wild.done, wild.violations,
+             wild.worst.value, wild.worstFrame);
 }
 
 void run(Options& options) {
@@ -183,6 +178,23 @@ void run(Options& options) {
 }
 
 }  // namespace
+
+std::string writeFailure(const std::filesystem::path& folder, const stress::StressFrame& frame) {
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path exr = folder / (frame.capture.name + ".exr"),
+                              json = folder / (frame.capture.name + ".json");
+  Capture capture = frame.capture;
+  capture.irradiance = rgb(capture.irradiance);
+  if (const std::uint32_t mark = frame.settings.translucency.materialMarkBit)
+    for (std::uint8_t& m : capture.material) m = static_cast<std::uint8_t>(m & ~mark);
+  writeCapture(capture, exr);
+  ReplaySettings settings = frame.settings;
+  settings.transmittance = frame.transmittance;
+  writeWholeText(json, settingsJson(settings));
+  const std::string debug = debugOption(settings);
+  return "pellucid replay " + exr.string() + " --set @" + json.string() +
+         (debug.empty() ? "" : " --debug " + debug);
+}
 
 void addStressCommand(const Command& app) {
   auto options = std::make_shared<Options>();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 
@@ -13,8 +14,7 @@
 #include "capture/write.h"
 #include "cli/capture_options.h"
 #include "cli/commands.h"
-#include "cli/output.h"
-#include "cli/scene_capture.h"
+#include "cli/settings.h"
 #include "common/compare.h"
 #include "common/error.h"
 #include "common/progress.h"
@@ -36,111 +36,69 @@ namespace {
 // bits depend on the device.
 class SceneHash {
 public:
+  // Numbers, and ranges of numbers or of ranges.
+  template <class... T>
+  void add(const T&... values) {
+    (addOne(values), ...);
+  }
   void add(const Model& model);  // triangles and surfaces
   void add(const SceneParameters& parameters);
   void add(const reference::Emitters& emitters, const Capture& capture);  // of it size, camera, materials
-  void addImages(const Capture& capture);  // of one that a file holds: material and albedo
-  void add(const std::string& option);
-  std::string text() const;  // 16 hexadecimal digits
+  std::string text() const;                                               // 16 hexadecimal digits
 
 private:
   template <class T>
-  void value(const T& value);
-  void bytes(const void* data, std::size_t size);
+  void addOne(const T& value) {
+    if constexpr (std::is_enum_v<T>)
+      addOne(static_cast<int>(value));
+    else if constexpr (std::is_arithmetic_v<T>)
+      for (const std::byte byte : std::as_bytes(std::span(&value, 1)))
+        hash_ = (hash_ ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
+    else
+      for (const auto& item : value) addOne(item);
+  }
 
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-void SceneHash::bytes(const void* data, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i)
-    hash_ = (hash_ ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3u;
-}
-
-template <class T>
-void SceneHash::value(const T& value) {
-  static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
-  bytes(&value, sizeof value);
-}
-
 void SceneHash::add(const Model& model) {
   for (const Vertex& vertex : model.vertices) {
-    for (const float x : vertex.position) value(x);
-    for (const float x : vertex.normal) value(x);
-    for (const float x : vertex.uv) value(x);
-    for (const float x : vertex.color) value(x);
-    value(vertex.mark);
-    if (vertex.alpha != 1) value(vertex.alpha);
+    add(vertex.position, vertex.normal, vertex.uv, vertex.color, vertex.mark);
+    if (vertex.alpha != 1) add(vertex.alpha);
   }
-  for (const std::uint32_t index : model.indices) value(index);
-  for (const Part& part : model.parts) {
-    value(part.firstIndex);
-    value(part.indexCount);
-    value(part.object);
-    value(part.surface);
-  }
+  add(model.indices);
+  for (const Part& part : model.parts) add(part.firstIndex, part.indexCount, part.object, part.surface);
   for (const Surface& surface : model.surfaces) {
-    for (const auto& color : {surface.baseColor, surface.addedColor})
-      for (const double x : color) value(x);
-    value(surface.texture);
-    value(surface.alphaCutoff);
-    value(surface.doubleSided);
-    value(surface.material);
+    add(surface.baseColor, surface.addedColor, surface.texture, surface.alphaCutoff, surface.doubleSided,
+        surface.material);
     if (surface.lobeMap < 0 && surface.lobes == SurfaceLobes::Together) continue;
-    value(surface.lobeMap);
-    value(surface.displaced);
-    value(surface.backscatter);
-    value(static_cast<int>(surface.lobes));
+    add(surface.lobeMap, surface.displaced, surface.backscatter, surface.lobes);
   }
-  for (const Texture& texture : model.textures) bytes(texture.rgba.data(), texture.rgba.size());
-  value(model.metersPerUnit);
+  for (const Texture& texture : model.textures) add(texture.rgba);
+  add(model.metersPerUnit);
 }
 
 void SceneHash::add(const SceneParameters& parameters) {
   add(parameters.name);
-  for (const auto& [name, number] : parameters.options) {
-    add(name);
-    value(number);
-  }
-  value(parameters.seed);
+  for (const auto& [name, number] : parameters.options) add(name, number);
+  add(parameters.seed);
 }
 
 void SceneHash::add(const reference::Emitters& emitters, const Capture& capture) {
-  for (const Light& light : emitters.lights) {
-    value(static_cast<int>(light.type));
-    for (const auto& triple : {light.position, light.direction, light.color})
-      for (const double x : triple) value(x);
-    for (const double x :
-         {light.intensity, light.range, light.radius, light.innerConeAngle, light.outerConeAngle})
-      value(x);
-  }
-  if (emitters.environment)
-    for (const auto& color : {emitters.environment->up, emitters.environment->down})
-      for (const double x : color) value(x);
-  value(capture.width);
-  value(capture.height);
-  for (const double x : capture.clipFromView) value(x);
-  for (const double x : capture.viewFromWorld) value(x);
+  for (const Light& light : emitters.lights)
+    add(light.type, light.position, light.direction, light.color, light.intensity, light.range, light.radius,
+        light.innerConeAngle, light.outerConeAngle);
+  if (emitters.environment) add(emitters.environment->up, emitters.environment->down);
+  add(capture.width, capture.height, capture.clipFromView, capture.viewFromWorld);
   for (const MaterialSource& source : capture.materials) {
     if (const auto* wall = std::get_if<ThinWallMaterial>(&source)) {
-      for (const auto& color : {wall->reflectance, wall->transmittance})
-        for (const double x : color) value(x);
+      add(wall->reflectance, wall->transmittance);
       continue;
     }
     const CoefficientMaterial material = coefficientsOf(source, capture.name + ": materials");
-    for (const auto& color : {material.scattering, material.absorption})
-      for (const double x : color) value(x);
-    value(material.g);
-    value(material.ior);
+    add(material.scattering, material.absorption, material.g, material.ior);
   }
 }
-
-void SceneHash::addImages(const Capture& capture) {
-  bytes(capture.material.data(), capture.material.size());
-  bytes(capture.hiddenIrradiance.data.data(), capture.hiddenIrradiance.data.size() * sizeof(float));
-  bytes(capture.albedo.data.data(), capture.albedo.data.size() * sizeof(float));
-}
-
-void SceneHash::add(const std::string& option) { bytes(option.data(), option.size()); }
 
 std::string SceneHash::text() const {
   char text[17];
@@ -268,7 +226,8 @@ Scene makeScene(const Command& command, const Options& options) {
   scene.emitters.lights = scene.capture.lights;
   for (Light& light : scene.emitters.lights) light.shadowMaps.clear();
   hash.add(scene.emitters, scene.capture);
-  if (!options.like.empty()) hash.addImages(scene.capture);
+  if (!options.like.empty())
+    hash.add(scene.capture.material, scene.capture.hiddenIrradiance.data, scene.capture.albedo.data);
   hash.add(options.entry);
   scene.hash = hash.text();
   return scene;

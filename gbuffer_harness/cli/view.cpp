@@ -31,9 +31,7 @@ void addViewCommand(const Command& app) {
 #include "capture/read.h"
 #include "cli/capture_options.h"
 #include "cli/numbers.h"
-#include "cli/output.h"
 #include "cli/settings.h"
-#include "cli/tone_map_option.h"
 #include "scene/model.h"
 #include "view/application.h"
 #include "view/perception.h"
@@ -186,11 +184,10 @@ SceneToView loaded(const Options& given, const std::filesystem::path& path) {
   return sceneOf(command, options);
 }
 
-void parseSize(const std::string& text, ApplicationOptions& options) {
-  const std::vector<std::string> size = split(text, 'x');
-  if (size.size() != 2) throw UsageError("--window-size: \"" + text + "\" is not WIDTHxHEIGHT");
-  options.width = parseNumber<int>("--window-size", size[0]);
-  options.height = parseNumber<int>("--window-size", size[1]);
+void setWindowSize(const std::string& text, ApplicationOptions& options) {
+  const auto [width, height] = parseSize("--window-size", text);
+  options.width = width;
+  options.height = height;
   for (const int side : {options.width, options.height})
     if (side < kSmallestWindow || side > kLargestSide)
       throw UsageError("--window-size: " + std::to_string(side) + " is outside " +
@@ -215,7 +212,7 @@ void view(const Command& command, const Options& options) {
   application.device = options.scene.device;
   application.validation = options.validate;
   application.window = !options.noWindow;
-  parseSize(options.windowSize, application);
+  setWindowSize(options.windowSize, application);
   application.frames = options.frames;
   application.script = options.script;
   application.screenshot = options.screenshot;

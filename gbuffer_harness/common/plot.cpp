@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "common/png.h"
-#include "common/text.h"
 
 namespace pellucid::harness {
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "common/image.h"
@@ -23,11 +24,18 @@ std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f, Tone
 // The factor that brings the 99th percentile of the values above 0 to 0.8: below white, above the middle.
 float autoExposure(const Image& image);
 
-// Images of one height and channel count, left to right, with a black gap of `gap` pixels between.
-Image sideBySide(const std::vector<const Image*>& images, int gap = 4);
-
 // Images of one size and channel count in rows of `columns`, the first at the top left, with black gaps of
 // `gap` pixels; what the last row lacks is black. columns: >= 1.
 Image contactSheet(const std::vector<const Image*>& images, int columns, int gap = 4);
+
+struct TextRect {
+  int left, top, right, bottom;  // pixels
+};
+
+inline constexpr int kTextHeight = 9;  // capitals and their margin
+
+// ASCII words as rectangles to fill, right and down of (0, 0).
+std::vector<TextRect> textRects(const std::string& words);
+int textWidth(const std::string& words);
 
 }  // namespace pellucid::harness

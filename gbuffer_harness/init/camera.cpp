@@ -1,4 +1,4 @@
-#include "init/camera.h"
+#include "init/manifest.h"
 
 #include <cmath>
 #include <glm/glm.hpp>

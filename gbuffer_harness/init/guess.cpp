@@ -1,4 +1,4 @@
-#include "init/guess.h"
+#include "init/manifest.h"
 
 #include <algorithm>
 #include <cctype>

@@ -37,6 +37,7 @@ public:
 private:
   Json sourceOf(Role role) const;
   void say(Role role, const std::string& how);
+  void doubt(const std::string& key, const std::string& sentence);
   void addDepths();
   void addIrradiance();
   void addNormal();
@@ -77,10 +78,13 @@ void Builder::say(Role role, const std::string& how) {
   for (const std::string& channel : guess.group.channels) channels += (channels.empty() ? "" : ",") + channel;
   result_.found.push_back(std::string(roleName(role)) + ": " + guess.group.file.filename().string() + " " +
                           channels + (how.empty() ? "" : ", " + how) + ": " + guess.why);
-  if (!guess.doubt.empty()) {
-    result_.json["// " + std::string(roleName(role))] = guess.doubt;
-    result_.missing.push_back(std::string(roleName(role)) + ": " + guess.doubt);
-  }
+  if (!guess.doubt.empty()) doubt(roleName(role), guess.doubt);
+}
+
+// In the manifest, and among what would make the picture better.
+void Builder::doubt(const std::string& key, const std::string& sentence) {
+  result_.json["// " + key] = sentence;
+  result_.missing.push_back(key + ": " + sentence);
 }
 
 Image Builder::read(Role role) {
@@ -206,19 +210,17 @@ void Builder::addNormal() {
                         ", " + number(100 * best) + " % face the camera");
   constexpr double kEnough = 0.95;
   if (best >= kEnough) return;
-  const std::string doubt =
-      "only " + number(100 * best) +
-      " % of the normals face the camera: their axes or their packing are others, or the camera is; "
-      "leave them out (delete \"normal\") or decode them";
-  result_.json["// normal"] = doubt;
-  result_.missing.push_back("normal: " + doubt);
+  doubt("normal",
+        "only " + number(100 * best) +
+            " % of the normals face the camera: their axes or their packing are others, or the camera "
+            "is; leave them out (delete \"normal\") or decode them");
 }
 
 void Builder::addMaterial() {
   Json& json = result_.json["buffers"]["material"];
   json = {{"constant", {1}}};
   isTranslucent_.assign(front_.pixels(), true);
-  std::string doubt = "no channel says what is translucent: everything is";
+  std::string unsure = "no channel says what is translucent: everything is";
   if (guesses_.count(Role::Material)) {
     std::map<long, std::size_t> stored;
     bool isWhole = true;
@@ -232,7 +234,7 @@ void Builder::addMaterial() {
     if (isWhole && stored.size() <= kMostMaterials) {
       json = sourceOf(Role::Material);
       std::string values;
-      doubt.clear();
+      unsure.clear();
       for (const auto& [value, pixels] : stored) {
         const bool isMaterial = words_.materialIds.empty() ? value != 0
                                                            : std::count(words_.materialIds.begin(),
@@ -245,26 +247,23 @@ void Builder::addMaterial() {
         isTranslucent_[i] = json["map"][std::to_string(std::lround(image.data[i]))] == 1;
       say(Role::Material, "values " + values);
       if (words_.materialIds.empty())
-        doubt =
+        unsure =
             "every value but 0 is taken for translucent: " + values + "; --material-id names those that are";
     } else {
-      doubt = "its values are no small whole numbers, so everything is taken for translucent";
+      unsure = "its values are no small whole numbers, so everything is taken for translucent";
     }
   }
-  if (doubt.empty()) return;
-  result_.json["// material"] = doubt;
-  result_.missing.push_back("material: " + doubt);
+  if (!unsure.empty()) doubt("material", unsure);
 }
 
 // Renderers keep the light of subsurface shaders apart from that of diffuse ones.
 void Builder::addBlackness() {
   for (std::size_t i = 0; i < irradiance_.data.size(); ++i)
     if (isTranslucent_[i / 3] && irradiance_.data[i] != 0) return;
-  const std::string doubt =
+  doubt(
+      "irradiance",
       "the pass is black wherever something is translucent: a renderer keeps the light of subsurface shaders "
-      "in a pass of their own, which has diffused already; render the irradiance with diffuse shaders";
-  result_.json["// irradiance"] = doubt;
-  result_.missing.push_back("irradiance: " + doubt);
+      "in a pass of their own, which has diffused already; render the irradiance with diffuse shaders");
 }
 
 void Builder::addCamera() {
@@ -276,26 +275,23 @@ void Builder::addCamera() {
   if (!unknown.empty()) result_.json["// camera"] = "unknown: " + unknown;
 }
 
+// The most important come first.
 void Builder::addMissing() {
-  std::vector<std::string> missing;
-  if (words_.lights.empty()) {
-    const char* const sentence =
+  std::vector<std::string> doubts;
+  std::swap(doubts, result_.missing);
+  if (words_.lights.empty())
+    doubt(
+        "lights",
         "without a light nothing comes through: --light directional:X,Y,Z:E or point:X,Y,Z:I adds one, best "
-        "with a \"shadowMap\"";
-    result_.json["// lights"] = sentence;
-    missing.push_back(std::string("lights: ") + sentence);
-  }
-  if (!guesses_.count(Role::BackDepth)) {
-    const char* const sentence =
+        "with a \"shadowMap\"");
+  if (!guesses_.count(Role::BackDepth))
+    doubt(
+        "backDepth",
         "without the depth of back faces, or a light's shadow map, nothing says how thick things are: render "
-        "back faces alone";
-    result_.json["// backDepth"] = sentence;
-    missing.push_back(std::string("backDepth: ") + sentence);
-  }
+        "back faces alone");
   if (!camera_.isPlaced && !words_.lights.empty())
-    missing.push_back("camera: unknown: " + camera_.unknown.front());
-  missing.insert(missing.end(), result_.missing.begin(), result_.missing.end());
-  result_.missing = std::move(missing);
+    result_.missing.push_back("camera: unknown: " + camera_.unknown.front());
+  result_.missing.insert(result_.missing.end(), doubts.begin(), doubts.end());
 }
 
 GuessedManifest Builder::build() {

@@ -1,4 +1,5 @@
-// A manifest for EXR files of another program, with what it could not know said in it.
+// A manifest for EXR files that another program wrote: which channels are the buffers of a capture, what the
+// camera's matrices are, and, in the manifest, what could not be known.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +9,75 @@
 #include <string>
 #include <vector>
 
-#include "init/camera.h"
-#include "init/guess.h"
+#include "capture/exr.h"
+#include "scene/camera.h"
 
 namespace pellucid::harness {
+
+// Channels of one layer.
+struct ChannelGroup {
+  std::filesystem::path file;
+  int part = 0;
+  std::string name;      // of the layer; else of the part, or of the file without extension
+  bool isNamed = false;  // by a layer
+  // Full names: of a color R, G, B, of a vector X, Y, Z, else of each channel by itself.
+  std::vector<std::string> channels;
+};
+
+// The groups of all files, of which none is empty. Alpha is left out, and so are Cryptomatte's. Throws
+// InputError.
+std::vector<ChannelGroup> survey(const std::vector<std::filesystem::path>& files);
+
+// The channels of a group as one image. Throws InputError.
+Image readGroup(const ChannelGroup& group);
+
+enum class Role { FrontDepth, BackDepth, Irradiance, Normal, Albedo, Material };
+
+// The key of a manifest's "buffers".
+const char* roleName(Role role);
+
+struct Guess {
+  ChannelGroup group;  // its first channel, of depths and materials
+  std::string why;     // a sentence's end: "its name is that of ..."
+  std::string doubt;   // what it would take to be sure; empty: nothing
+  double scale = 1;
+  bool includesAlbedo = false;
+  double metersPerUnit = 0;  // 0: the name says nothing
+};
+
+// By names that Blender, Arnold, Nuke, V-Ray, Unreal, Unity, RenderDoc and this program use. `given`: the
+// person's own, layer, channel, or file without extension. Throws UsageError for one that is not there.
+std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
+                                 const std::map<Role, std::string>& given);
+
+// Statements of the person; all are optional.
+struct CameraWords {
+  std::optional<double> verticalFov;          // degrees
+  std::optional<double> orthographicHeight;   // scene units
+  std::optional<double> nearPlane, farPlane;  // scene units
+  std::optional<bool> reversedZ;
+  std::optional<Vector3> eye, target;
+  Vector3 up = {0, 1, 0};
+};
+
+// Facts that the depths tell.
+struct DepthFacts {
+  bool isDevice = false, looksReversed = true;
+  double nearest = 1;  // planar distance; of viewZ
+};
+
+struct GuessedCamera {
+  Matrix clipFromView = kIdentity, viewFromWorld = kIdentity;
+  std::string why;                   // where the projection is from
+  std::vector<std::string> unknown;  // sentences: what had to be assumed
+  bool isPlaced = false;             // viewFromWorld is known
+};
+
+// From `words`, else from the OpenEXR attributes worldToCamera, worldToNDC and screenWindowWidth of the
+// files. Throws UsageError, which names the option, where neither says the projection, and InputError for
+// attributes that are no camera's.
+GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int width, int height,
+                          const CameraWords& words, const DepthFacts& depth);
 
 struct InitWords {
   CameraWords camera;

@@ -4,46 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <unsupported/Eigen/SpecialFunctions>
 
 #include "common/error.h"
 
 namespace pellucid::harness {
 
 namespace {
-
-// The continued fraction of the incomplete beta function, DLMF 8.17.22, by Lentz's method (Press et al.,
-// Numerical Recipes, 6.4).
-double betaFraction(double a, double b, double x) {
-  constexpr double kTiny = 1e-300, kEnough = 1e-15;
-  double c = 1, d = 1 - (a + b) * x / (a + 1);
-  d = 1 / (std::abs(d) < kTiny ? kTiny : d);
-  double result = d;
-  for (int m = 1; m < 10000; ++m) {
-    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-    double change = 1;
-    for (const double term : {even, odd}) {
-      d = 1 + term * d;
-      c = 1 + term / c;
-      d = 1 / (std::abs(d) < kTiny ? kTiny : d);
-      if (std::abs(c) < kTiny) c = kTiny;
-      change = c * d;
-      result *= change;
-    }
-    if (std::abs(change - 1) < kEnough) break;
-  }
-  return result;
-}
-
-// I_x(a, b), DLMF 8.17.2; the fraction converges fast below (a + 1) / (a + b + 2).
-double incompleteBeta(double a, double b, double x) {
-  if (x <= 0) return 0;
-  if (x >= 1) return 1;
-  const double front =
-      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
-  if (x < (a + 1) / (a + b + 2)) return front * betaFraction(a, b, x) / a;
-  return 1 - front * betaFraction(b, a, 1 - x) / b;
-}
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -83,7 +50,7 @@ void test(VarianceSource& source, const VarianceSource& residual) {
 
 double upperTailF(double f, double degrees1, double degrees2) {
   if (!(f > 0)) return 1;
-  return incompleteBeta(degrees2 / 2, degrees1 / 2, degrees2 / (degrees2 + degrees1 * f));
+  return Eigen::numext::betainc(degrees2 / 2, degrees1 / 2, degrees2 / (degrees2 + degrees1 * f));
 }
 
 double bothTailsT(double t, double degrees) { return upperTailF(t * t, 1, degrees); }

@@ -1,4 +1,4 @@
-#include "metrics/flip.h"
+#include "metrics/eye.h"
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-
-#include "reference/camera.h"
 
 namespace pellucid::harness {
 
@@ -20,17 +17,11 @@ Surfaces::Surfaces(const Capture& capture)
       height_(capture.height),
       pixels_(static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height)) {
   const reference::Camera camera(capture.clipFromView, width_, height_);
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const std::uint8_t material = capture.material[index(x, y)];
-      if (material == 0) continue;
-      const std::optional<double> depth =
-          camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
-      if (!depth) continue;
-      const glm::dvec3 side =
-          camera.position({x + 1.0, y + 0.5}, *depth) - camera.position({x + 0.0, y + 0.5}, *depth);
-      pixels_[index(x, y)] = {*depth, glm::length(side), material};
-    }
+  forEachSurface(capture, camera, [&](int x, int y, double depth) {
+    const glm::dvec3 side =
+        camera.position({x + 1.0, y + 0.5}, depth) - camera.position({x + 0.0, y + 0.5}, depth);
+    pixels_[index(x, y)] = {depth, glm::length(side), capture.material[index(x, y)]};
+  });
 }
 
 Surfaces::Surfaces(int width, int height)
@@ -75,19 +66,13 @@ std::array<float, 4> visibleMiddle(const Capture& capture) {
   const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
   glm::dvec3 sum(0);
   double count = 0;
-  for (int y = 0; y < capture.height; ++y)
-    for (int x = 0; x < capture.width; ++x) {
-      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
-                           static_cast<std::size_t>(x)] == 0)
-        continue;
-      const std::optional<double> depth =
-          camera.planarDepth(capture.frontDepth.image.at(x, y)[0], capture.frontDepth.encoding);
-      if (!depth) continue;
-      sum += camera.position({x + 0.5, y + 0.5}, *depth);
-      ++count;
-    }
+  forEachSurface(capture, camera, [&](int x, int y, double depth) {
+    sum += camera.position({x + 0.5, y + 0.5}, depth);
+    ++count;
+  });
   if (count == 0) return {0, 0, 0, 0};
-  const glm::dvec4 middle = glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
+  const glm::dvec4 middle =
+      glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
   return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z), 1};
 }
 

@@ -6,8 +6,22 @@
 #include <vector>
 
 #include "capture/capture.h"
+#include "reference/camera.h"
 
 namespace pellucid::harness {
+
+// Calls visit(x, y, view depth) for each pixel that has a material and a depth.
+template <class Visit>
+void forEachSurface(const Capture& capture, const reference::Camera& camera, const Visit& visit) {
+  std::size_t i = 0;
+  for (int y = 0; y < capture.height; ++y)
+    for (int x = 0; x < capture.width; ++x, ++i) {
+      if (capture.material[i] == 0) continue;
+      if (const auto depth =
+              camera.planarDepth(capture.frontDepth.image.data[i], capture.frontDepth.encoding))
+        visit(x, y, *depth);
+    }
+}
 
 // Two neighboring pixels show one surface when both have the same material, not 0, and their view depths
 // differ by at most what the slope explains. It explains the step of a plane tilted by atan(2) = 63 degrees,
@@ -46,8 +60,8 @@ private:
   std::vector<Pixel> pixels_;
 };
 
-// In the world, with w 1: the middle of the surfaces with a material that the camera sees, as an engine passes the place of
-// the body that it looks at to options.anchor. w 0 where none is seen.
+// In the world, with w 1: the middle of the surfaces with a material that the camera sees, as an engine
+// passes the place of the body that it looks at to options.anchor. w 0 where none is seen.
 std::array<float, 4> visibleMiddle(const Capture& capture);
 
 }  // namespace pellucid::harness

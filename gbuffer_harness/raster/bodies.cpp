@@ -31,10 +31,6 @@ std::vector<std::uint32_t> placesOf(const Model& model) {
   return places;
 }
 
-glm::dvec3 positionOf(const Vertex& vertex) {
-  return {vertex.position[0], vertex.position[1], vertex.position[2]};
-}
-
 // Of Model::indices[index].
 glm::dvec3 cornerOf(const Model& model, std::uint32_t index) {
   return positionOf(model.vertices[model.indices[index]]);

@@ -18,10 +18,6 @@ namespace {
 constexpr double kMargin = 1.05;
 constexpr double kWidestHalfAngle = 75 * std::numbers::pi / 180;
 
-glm::dvec3 positionOf(const Vertex& vertex) {
-  return {vertex.position[0], vertex.position[1], vertex.position[2]};
-}
-
 // Calls visit(position) for the vertex of every index: vertices that no triangle uses do not count.
 template <class Visit>
 void forEachPosition(const Model& model, const Visit& visit) {

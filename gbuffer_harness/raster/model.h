@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct Vertex {
   std::array<float, 2> lobeUv = {0, 0};  // of the lobe map
   float alpha = 1;                       // multiplies that of the base color's texel
 };
+
+inline glm::dvec3 positionOf(const Vertex& vertex) {
+  return {vertex.position[0], vertex.position[1], vertex.position[2]};
+}
 
 enum class TextureWrap { Repeat, Clamp, Mirror };
 

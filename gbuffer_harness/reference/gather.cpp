@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_access.hpp>
 #include <iterator>
+#include <numbers>
 #include <optional>
 
 #include "capture/capture.h"
@@ -130,7 +131,6 @@ double ShadowTexels::across(int x, int y, const glm::dvec3& point) const {
   return std::abs(glm::dot(solid, center.direction)) * distance * distance;
 }
 
-constexpr double kPi = 3.14159265358979323846;
 // Kernels leave out this share beyond their radius.
 constexpr double kTail = 1e-4;
 // Texels per side of a block that is skipped as a whole where it is out of reach.
@@ -481,7 +481,7 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (!(alike > 0) && !(y.seen && opposite > 0)) continue;
       // The texel of the exit itself has all that lies within a disc of its area.
       const glm::dvec3 profile =
-          own ? kernel.reflectedWithin(side / std::sqrt(kPi)) / y.area : kernel.reflected(path.distance);
+          own ? kernel.reflectedWithin(side / std::sqrt(std::numbers::pi)) / y.area : kernel.reflected(path.distance);
       if (y.seen) {
         sums.opposite += opposite * profile * y.flux;
         sums.seenEntering += alike * profile * y.within * y.flux;

@@ -131,8 +131,6 @@ Spline::Nearest Spline::nearest(const glm::dvec2& point) const {
           tangent.x * away.y - tangent.y * away.x > 0};
 }
 
-double square(double x) { return x * x; }
-
 // A value over the xy plane with its gradient.
 struct Height {
   double value = 0;

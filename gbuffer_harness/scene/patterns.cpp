@@ -9,7 +9,6 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::vector<SceneOption> withCommonOptions(std::vector<SceneOption> own) {
   const std::vector<SceneOption> common = {

@@ -197,8 +197,6 @@ Capture Renderer::render(Image* exactThickness) const {
   return capture;
 }
 
-double square(double x) { return x * x; }
-
 // Mirrors world and view space in z: what an engine with a left-handed world hands over.
 void makeLeftHanded(Capture& capture) {
   const glm::dmat4 mirror(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);

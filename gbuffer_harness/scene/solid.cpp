@@ -53,7 +53,6 @@ std::vector<double> realRoots(const std::vector<double>& c, double low, double h
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::optional<Span> beginningAfter(double tMin, std::initializer_list<Span> spans) {
   for (const Span& span : spans) {

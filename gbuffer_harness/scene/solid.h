@@ -2,10 +2,13 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <vector>
 
 namespace pellucid::harness {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Roots in [low, high], ascending, of c[0] + c[1] x + ... + c[n] x^n, to the precision of double
 // arithmetic. Roots of even multiplicity (a ray that only touches) may be left out.

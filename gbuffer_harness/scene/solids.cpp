@@ -8,7 +8,6 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Of a shadow map around what it covers.
 constexpr double kMargin = 1.1;

@@ -1,4 +1,4 @@
-// Conversions between the capture's arrays and GLM.
+// Conversions between the capture's arrays and GLM, and what formulas of scenes share.
 #pragma once
 
 #include <array>
@@ -8,6 +8,8 @@
 #include "capture/capture.h"
 
 namespace pellucid::harness {
+
+inline double square(double x) { return x * x; }
 
 inline glm::dvec3 toGlm(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 inline std::array<double, 3> fromGlm(const glm::dvec3& v) { return {v.x, v.y, v.z}; }

@@ -1,6 +1,11 @@
 #include "stress/checks.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "stress/random_parts.h"
 
 namespace pellucid::harness::stress {
 
@@ -40,6 +45,13 @@ StressFrame plainFrame(const StressFrame& frame) {
   limitIrradiance(plain.capture.irradiance);
   if (frame.wild) plain.capture.albedo = {};
   return plain;
+}
+
+constexpr double kDim = 0x1p-24;  // below what tolerances see
+
+StressFrame withLights(StressFrame frame, double factor) {
+  for (Light& light : frame.capture.lights) light.intensity *= factor;
+  return frame;
 }
 
 StressFrame withoutLights(StressFrame frame) {
@@ -101,18 +113,355 @@ bool Subject::saturates() {
   return *saturates_;
 }
 
-StressFrame withLights(StressFrame frame, double factor) {
-  for (Light& light : frame.capture.lights) light.intensity *= factor;
+namespace {
+
+// Single bits: what may be written, what may be read.
+
+bool aliased(const StressFrame& f) {
+  return f.settings.aliasOutput && f.settings.debugView == PELLUCID_DEBUG_NONE;
+}
+
+// Some groups go by lists of the device's.
+bool hasLists(const FrameRun& run) {
+  const PellucidPlan& plan = run.plan();
+  return std::any_of(plan.dispatches, plan.dispatches + plan.dispatchCount,
+                     [](const PellucidDispatch& d) { return d.indirect != 0; });
+}
+
+// A frame with nothing to do, whose output is the irradiance, stays as it is, bad values included.
+bool isLeft(const FrameRun& run) { return run.plan().dispatchCount == 0; }
+
+std::optional<Worst> finite(Subject& s) {
+  if (isLeft(*s.run)) return {};
+  return notFinite(s.output, s.owned);
+}
+
+std::optional<Worst> notNegative(Subject& s) {
+  if (s.frame.settings.debugView == PELLUCID_DEBUG_THICKNESS || isLeft(*s.run)) return {};
+  return negative(s.output, s.owned);
+}
+
+std::optional<Worst> outside(Subject& s) { return changedOutside(s.before, s.output, s.owned); }
+
+std::optional<Worst> written(Subject& s) {
+  if (aliased(s.frame)) return {};
+  return unwritten(s.output, s.owned);
+}
+
+std::optional<Worst> sameBits(Subject& s) {
+  return differentBits(s.output, s.renderer.render(s.frame, *s.run, s.frame.index + 1), s.owned);
+}
+
+std::optional<Worst> alias(Subject& s) {
+  if (s.frame.settings.debugView != PELLUCID_DEBUG_NONE) return {};
+  StressFrame other = s.frame;
+  other.settings.aliasOutput = !other.settings.aliasOutput;
+  const std::unique_ptr<FrameRun> run = s.renderer.prepare(other);
+  if (isLeft(*s.run) || isLeft(*run)) return {};
+  return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
+}
+
+std::optional<Worst> lists(Subject& s) {
+  StressFrame other = s.frame;
+  const bool asks = s.frame.settings.indirectDispatches == 1;
+  other.settings.indirectDispatches = asks ? 0 : 1;
+  const std::unique_ptr<FrameRun> run = s.renderer.prepare(other);
+  if (!hasLists(*s.run) && !hasLists(*run)) return {};
+  return differentBits(s.output, s.renderer.render(other, *run, other.index), s.owned);
+}
+
+// Bits of `frame` with `change` made to each pixel that is not owned; none if all are owned.
+template <class Change>
+std::optional<Worst> withUnowned(Subject& s, const Change& change) {
+  StressFrame other = s.frame;
+  bool any = false;
+  for (std::size_t i = 0; i < s.owned.size(); ++i)
+    if (!s.owned[i]) {
+      change(other.capture, i);
+      any = true;
+    }
+  if (!any) return {};
+  return differentBits(s.output, s.renderer.render(other), s.owned);
+}
+
+std::optional<Worst> unownedPixels(Subject& s) {
+  Random random = s.random("unowned-pixels");
+  return withUnowned(s, [&](Capture& c, std::size_t i) {
+    for (Image* image : {&c.irradiance, &c.normal, &c.albedo})
+      for (std::size_t k = 0; k < static_cast<std::size_t>(image->channels); ++k)
+        image->data[i * static_cast<std::size_t>(image->channels) + k] = badFloat(random);
+  });
+}
+
+std::optional<Worst> unownedDepths(Subject& s) {
+  Random random = s.random("unowned-depths");
+  return withUnowned(s, [&](Capture& c, std::size_t i) {
+    const float other =
+        c.frontDepth.image
+            .data[static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))];
+    c.frontDepth.image.data[i] =
+        random.chance(0.5) ? badFloat(random) : other * static_cast<float>(random.real());
+    if (!c.backDepth.image.empty()) c.backDepth.image.data[i] = random.chance(0.5) ? badFloat(random) : other;
+  });
+}
+
+// Some owned pixels; none if there is none.
+std::vector<std::size_t> someOwned(Subject& s, Random& random) {
+  std::vector<std::size_t> all, some;
+  for (std::size_t i = 0; i < s.owned.size(); ++i)
+    if (s.owned[i]) all.push_back(i);
+  for (int k = random.whole(1, 3); k > 0 && !all.empty(); --k)
+    some.push_back(all[static_cast<std::size_t>(random.whole(0, static_cast<int>(all.size()) - 1))]);
+  return some;
+}
+
+StressFrame withIrradiance(const StressFrame& frame, const std::vector<std::size_t>& pixels, int channels,
+                           float value) {
+  StressFrame other = frame;
+  for (const std::size_t pixel : pixels)
+    for (int k = 0; k < 3; ++k)
+      if (channels >> k & 1) other.capture.irradiance.data[4 * pixel + static_cast<std::size_t>(k)] = value;
+  return other;
+}
+
+// docs/integration.md, "Conventions": NaN and what is negative counts as 0, 65504 is the ceiling.
+std::optional<Worst> badValues(Subject& s) {
+  constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kPairs[][2] = {{kNaN, 0},       {-kNaN, 0},  {-1, 0},
+                                 {-kFloatInfinity, 0}, {-65504, 0}, {kFloatInfinity, 65504}};
+  Random random = s.random("bad-values");
+  const std::vector<std::size_t> pixels = someOwned(s, random);
+  if (pixels.empty() || isLeft(*s.run)) return {};
+  const int channels = random.whole(1, 7);
+  const auto& [bad, counted] = kPairs[random.whole(0, 5)];
+  return differentBits(s.renderer.render(withIrradiance(s.frame, pixels, channels, bad)),
+                       s.renderer.render(withIrradiance(s.frame, pixels, channels, counted)), s.owned);
+}
+
+// Pixels to each side that the irradiance of a pixel may change. A texel of the coarsest level, whose sides
+// are 2^l pixels, sees those that its filters do: 1.5 texels of each level below for the reductions, 2 for
+// each refinement, and 4 for the Gaussian of a stretched kernel. Halving sizes sum to twice the last.
+std::optional<int> kernelReach(const Subject& s) {
+  if (!s.diffuses()) return 0;
+  const PellucidPlan& plan = s.run->plan();
+  for (std::uint32_t i = 0; i < plan.dispatchCount; ++i)
+    if (std::strcmp(plan.dispatches[i].name, "upsample") == 0)
+      return 15 << plan.dispatches[i].pushConstants[0];
+  return {};
+}
+
+std::optional<Worst> reach(Subject& s) {
+  Random random = s.random("reach");
+  const std::vector<std::size_t> pixels = someOwned(s, random);
+  const std::optional<int> distance = kernelReach(s);
+  if (pixels.empty() || !distance) return {};
+  const int width = s.frame.capture.width;
+  const int x = static_cast<int>(pixels[0]) % width, y = static_cast<int>(pixels[0]) / width;
+  Pixels beyond = s.owned;
+  bool any = false;
+  for (std::size_t i = 0; i < beyond.size(); ++i) {
+    const int dx = std::abs(static_cast<int>(i) % width - x), dy = std::abs(static_cast<int>(i) / width - y);
+    if (std::max(dx, dy) <= *distance) beyond[i] = 0;
+    any = any || beyond[i];
+  }
+  if (!any) return {};
+  return differentBits(s.output, s.renderer.render(withIrradiance(s.frame, {pixels[0]}, 7, badFloat(random))),
+                       beyond);
+}
+
+std::optional<Worst> alpha(Subject& s) {
+  return differentAlpha(aliased(s.frame) ? s.before : s.run->irradiance(), s.output, s.owned);
+}
+
+constexpr const char* kBits = "bits have no tolerance";
+
+// Energies: what must come of changed light and thickness.
+
+// A constant comes back as it is where nothing is added and nothing multiplied.
+std::optional<Worst> constant(Subject& s) {
+  if (!s.diffuses()) return {};
+  StressFrame other = s.unlit();
+  other.settings.features = PELLUCID_FEATURE_DIFFUSION;
+  other.capture.albedo = {};
+  Random random = s.random("constant");
+  const float level = random.of({0.25f, 1.0f, 3.0f, 1000.0f});  // halves
+  for (std::size_t i = 0; i < other.capture.irradiance.data.size(); ++i)
+    if (i % 4 < 3) other.capture.irradiance.data[i] = level * static_cast<float>(i % 4 + 1);
+  const Image& expected = other.capture.irradiance;
+  return apart(s.renderer.render(other), expected, s.owned);
+}
+
+StressFrame withTwiceIrradiance(StressFrame frame) {
+  for (std::size_t i = 0; i < frame.capture.irradiance.data.size(); ++i)
+    if (i % 4 < 3) frame.capture.irradiance.data[i] *= 2;
   return frame;
 }
 
+std::optional<Worst> twiceIrradiance(Subject& s) {
+  return notTwice(s.unlitOutput(), s.renderer.render(withTwiceIrradiance(s.unlit())), s.owned);
+}
+
+std::optional<Worst> moreIrradiance(Subject& s) {
+  Random random = s.random("more-irradiance");
+  StressFrame more = s.unlit();
+  std::vector<float>& e = more.capture.irradiance.data;
+  const double share = random.chance(0.3) ? 0 : random.magnitude(1e-3, 1), most = random.magnitude(0.1, 1000);
+  for (std::size_t i = 0; i < e.size(); i += 4) {
+    if (share == 0 || !random.chance(share)) continue;
+    for (std::size_t k = 0; k < 3; ++k) e[i + k] += static_cast<float>(random.real(0, most));
+  }
+  if (share == 0)  // one bright pixel
+    e[4 * static_cast<std::size_t>(random.whole(0, static_cast<int>(s.owned.size()) - 1))] +=
+        static_cast<float>(most);
+  return less(s.unlitOutput(), s.renderer.render(more), s.owned);
+}
+
+// Half the lights and not twice, as a gather takes from irradiance that the lights themselves bring.
+std::optional<Worst> halfLights(Subject& s) {
+  if (!s.translucent() || s.saturates()) return {};
+  const Image half = s.renderer.render(withLights(s.plain(), 0.5));
+  return notSum(s.dimOutput(), {half, half}, s.plainOutput(), s.owned);
+}
+
+// Light and irradiance together: holds where the output ends at 0, too.
+std::optional<Worst> twiceAll(Subject& s) {
+  const std::vector<Light>& lights = s.plain().capture.lights;
+  const bool inDomain =
+      std::all_of(lights.begin(), lights.end(), [](const Light& l) { return l.intensity <= 5e14; });
+  if (!s.translucent() || !inDomain || s.saturates()) return {};
+  return notTwice(s.plainOutput(), s.renderer.render(withTwiceIrradiance(withLights(s.plain(), 2))), s.owned);
+}
+
+std::optional<Worst> sumOfLights(Subject& s) {
+  const std::size_t count = s.frame.capture.lights.size();
+  if (!s.translucent() || count < 2 || count > 4 || s.saturates()) return {};
+  std::vector<Image> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    StressFrame one = withLights(s.plain(), kDim);
+    one.capture.lights[i] = s.plain().capture.lights[i];
+    parts.push_back(s.renderer.render(one));
+  }
+  return notSum(s.dimOutput(), parts, s.plainOutput(), s.owned);
+}
+
+// The frame with light that is not gathered.
+const StressFrame* ungathered(Subject& s, StressFrame& frame) {
+  if (!s.translucent()) return nullptr;
+  frame = s.plain();
+  frame.settings.translucency.gatherSamples = 0;
+  return &frame;
+}
+
+std::optional<Worst> thinnerLimit(Subject& s) {
+  StressFrame frame;
+  if (!ungathered(s, frame)) return {};
+  StressFrame thinner = frame;
+  float& most = thinner.settings.translucency.maximumThickness;
+  Random random = s.random("thinner-limit");
+  most = static_cast<float>(random.magnitude(0.01, 100)) * (most > 0 ? most / 100 : 1);
+  return less(s.renderer.render(thinner), s.renderer.render(frame), s.owned);
+}
+
+std::optional<Worst> darkerFilter(Subject& s) {
+  StressFrame frame;
+  if (!ungathered(s, frame)) return {};
+  StressFrame darker = frame;
+  Random random = s.random("darker-filter");
+  for (float& f : darker.settings.translucency.transmittanceFilter) f *= static_cast<float>(random.real());
+  return less(s.renderer.render(darker), s.renderer.render(frame), s.owned);
+}
+
+// A back depth farther away, where it says the thickness and nothing else: the hidden point of a directional
+// light without a map.
+std::optional<Worst> fartherBacks(Subject& s) {
+  StressFrame frame;
+  Capture& c = frame.capture;
+  if (!ungathered(s, frame) || c.backDepth.image.empty() || c.frontDepth.encoding != PELLUCID_DEPTH_VIEW_Z ||
+      c.backDepth.encoding != PELLUCID_DEPTH_VIEW_Z)
+    return {};
+  std::erase_if(frame.capture.lights,
+                [](const Light& light) { return light.type != PELLUCID_LIGHT_DIRECTIONAL; });
+  if (frame.capture.lights.empty()) return {};
+  for (Light& light : frame.capture.lights) light.shadowMaps.clear();
+  StressFrame thicker = frame;
+  Random random = s.random("farther-backs");
+  const auto factor = 1 + static_cast<float>(random.magnitude(1e-4, 1));
+  for (std::size_t i = 0; i < s.owned.size(); ++i) {
+    float& back = thicker.capture.backDepth.image.data[i];
+    // One in front of the front is none.
+    if (back > c.frontDepth.image.data[i] && back < 1e8f) back *= factor;
+  }
+  return less(s.renderer.render(thicker), s.renderer.render(frame), s.owned);
+}
+
+// The next frame of a camera that stands still shows what it kept.
+std::optional<Worst> reuse(Subject& s) {
+  if (s.frame.settings.reuse == PELLUCID_REUSE_NONE || s.frame.settings.debugView != PELLUCID_DEBUG_NONE)
+    return {};
+  // In place, a frame with nothing to do keeps irradiance that is no number.
+  if (s.run->plan().dispatchCount == 0) return {};
+  const std::unique_ptr<FrameRun> next = s.renderer.prepare(s.frame, s.run.get());
+  return apart(s.renderer.render(s.frame, *next, s.frame.index + 2), s.output, s.owned);
+}
+
+constexpr const char* kRounding = "passes round colors to halves, 5e-4 each";
+constexpr const char* kLight = "colors are rounded to halves once with and once without the light, 5e-4 each";
+
+}  // namespace
+
 std::span<const Check> checks() {
-  static const std::vector<Check> all = [] {
-    std::vector<Check> joined(bitChecks().begin(), bitChecks().end());
-    joined.insert(joined.end(), energyChecks().begin(), energyChecks().end());
-    return joined;
-  }();
-  return all;
+  static const Check table[] = {
+      {"finite", "RGB of every owned pixel is finite; counts values", "frames with dispatches", 0, 0, kBits,
+       &finite},
+      {"not-negative", "RGB of every owned pixel is >= 0; largest deficit",
+       "frames with dispatches, but for debug view thickness, where -1 is none", 0, 0, kBits, &notNegative},
+      {"outside", "pixels without material or outside the rect keep their bits; counts pixels", "all", 0, 0,
+       kBits, &outside},
+      {"written", "every owned pixel is written; counts pixels", "outputs that are not the irradiance", 0, 0,
+       kBits, &written},
+      {"same-bits", "a second recording over other garbage has the same bits", "all", 0, 0, kBits, &sameBits},
+      {"alias", "an output that is the irradiance has the bits of one that is not",
+       "frames with dispatches, but for debug views", 0, 0, kBits, &alias},
+      {"lists", "groups that go by lists of blocks with material have the bits of all groups",
+       "frames with lists, or with lists where they were asked for", 0, 0, kBits, &lists},
+      {"unowned-pixels", "irradiance, normals and albedo of pixels that are not owned change no bit",
+       "frames with pixels that are not owned", 0, 0, kBits, &unownedPixels},
+      {"unowned-depths", "depths of pixels that are not owned change no bit",
+       "frames with pixels that are not owned", 0, 0, kBits, &unownedDepths},
+      {"bad-values",
+       "irradiance that is NaN or negative gives the bits of 0, infinite irradiance gives the bits of 65504",
+       "frames with dispatches", 0, 0, kBits, &badValues},
+      {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel",
+       "frames larger than the kernel", 0, 0, kBits, &reach},
+      {"alpha", "alpha has the irradiance's bits, or is not finite as there", "all", 0, 0, kBits, &alpha},
+      {"constant", "constant irradiance comes back from the diffusion",
+       "frames that diffuse, without lights and albedo", 1e-3, 1e-3, kRounding, &constant},
+      {"twice-irradiance", "twice the irradiance gives twice the output", "all, without lights", 2e-3, 2e-3,
+       kRounding, &twiceIrradiance},
+      {"more-irradiance", "more irradiance at some pixels gives no pixel less", "all, without lights", 2e-3,
+       2e-3, kRounding, &moreIrradiance},
+      {"half-lights", "lights of half the intensity add half as much",
+       "frames with lights that stay below 65504", 6e-3, 6e-3, kLight, &halfLights},
+      {"twice-all",
+       "twice the lights and irradiance give twice the output",
+       "frames with lights that stay below 65504",
+       2e-3,
+       {},
+       "as above; wild lights reach 65504 in the gather's probes, which hold halves",
+       &twiceAll},
+      {"sum-of-lights", "a frame of lights adds the sum of what each adds",
+       "frames of 2 to 4 lights that stay below 65504", 5e-3, 5e-3, kLight, &sumOfLights},
+      {"thinner-limit", "a smaller maximumThickness gives no pixel more", "frames with lights, not gathered",
+       2e-3, 2e-3, kRounding, &thinnerLimit},
+      {"darker-filter", "a smaller transmittanceFilter gives no pixel more",
+       "frames with lights, not gathered", 2e-3, 2e-3, kRounding, &darkerFilter},
+      {"farther-backs", "a back depth farther away gives no pixel more",
+       "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
+      {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3,
+       kRounding, &reuse},
+  };
+  return table;
 }
 
 }  // namespace pellucid::harness::stress

@@ -10,7 +10,6 @@
 
 #include "replay/replay.h"
 #include "stress/measures.h"
-#include "stress/random.h"
 #include "stress/random_frame.h"
 
 namespace pellucid::harness::stress {
@@ -86,14 +85,6 @@ struct Check {
   std::optional<Worst> (*run)(Subject& subject);
 };
 
-inline constexpr double kDim = 0x1p-24;  // below what tolerances see
-
-StressFrame withLights(StressFrame frame, double factor);
-
 std::span<const Check> checks();
-
-// The tables that checks() joins: of bits, and of energies.
-std::span<const Check> bitChecks();
-std::span<const Check> energyChecks();
 
 }  // namespace pellucid::harness::stress

@@ -1,6 +1,7 @@
 #include "stress/measures.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -31,6 +32,17 @@ Worst largest(const Image& image, const Pixels& pixels, std::size_t first, std::
       if (!(value <= worst.value)) worst = at(image, i, std::isnan(value) ? kInfinity : value);
     }
   }
+  return worst;
+}
+
+// How many pixels are bad, at the place of the first.
+template <class IsBad>
+Worst badPixels(const Image& image, const IsBad& isBad) {
+  Worst worst;
+  double count = 0;
+  for (std::size_t p = 0; p < image.pixels(); ++p)
+    if (isBad(p) && count++ == 0) worst = at(image, 4 * p, 0);
+  worst.value = count;
   return worst;
 }
 
@@ -65,32 +77,20 @@ Worst negative(const Image& image, const Pixels& pixels) {
 }
 
 Worst changedOutside(const Image& before, const Image& after, const Pixels& pixels) {
-  Worst worst;
-  double count = 0;
-  for (std::size_t p = 0; p < pixels.size(); ++p) {
-    if (pixels[p] || std::memcmp(&before.data[4 * p], &after.data[4 * p], 4 * sizeof(float)) == 0) continue;
-    if (count++ == 0) worst = at(after, 4 * p, 0);
-  }
-  worst.value = count;
-  return worst;
+  return badPixels(after, [&](std::size_t p) {
+    return !pixels[p] && std::memcmp(&before.data[4 * p], &after.data[4 * p], 4 * sizeof(float)) != 0;
+  });
 }
 
 Worst unwritten(const Image& after, const Pixels& pixels) {
-  Worst worst;
-  double count = 0;
-  for (std::size_t p = 0; p < pixels.size(); ++p) {
-    if (!pixels[p]) continue;
-    // 0xFF bytes are NaN with the sign bit and all of the mantissa, in half that has become float, too.
-    bool untouched = true;
-    for (std::size_t i = 4 * p; i < 4 * p + 4; ++i) {
-      std::uint32_t bits;
-      std::memcpy(&bits, &after.data[i], sizeof bits);
-      untouched = untouched && (bits & 0xFFFFE000u) == 0xFFFFE000u;
-    }
-    if (untouched && count++ == 0) worst = at(after, 4 * p, 0);
-  }
-  worst.value = count;
-  return worst;
+  // 0xFF bytes are NaN with the sign bit and all of the mantissa, in half that has become float, too.
+  const auto isGarbage = [](float value) {
+    return (std::bit_cast<std::uint32_t>(value) & 0xFFFFE000u) == 0xFFFFE000u;
+  };
+  return badPixels(after, [&](std::size_t p) {
+    const float* const pixel = &after.data[4 * p];
+    return pixels[p] && std::all_of(pixel, pixel + 4, isGarbage);
+  });
 }
 
 Worst differentBits(const Image& a, const Image& b, const Pixels& pixels) {

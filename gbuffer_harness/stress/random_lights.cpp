@@ -4,20 +4,12 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/vector.h"
 #include "stress/random_parts.h"
 
 namespace pellucid::harness::stress {
 
 namespace {
-
-std::array<double, 3> toArray(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-Matrix toMatrix(const glm::dmat4& m) {
-  Matrix result;
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) result[static_cast<std::size_t>(4 * c + r)] = m[c][r];
-  return result;
-}
 
 glm::dvec3 randomDirection(Random& random) {
   const double z = random.real(-1, 1), angle = random.real(0, 2 * std::numbers::pi);
@@ -105,9 +97,9 @@ void addOffsets(Random& random, bool wild, const Target& target, const MapCamera
 ShadowMap randomMap(Random& random, bool wild, const Target& target, const MapCamera& camera, bool sidecars) {
   ShadowMap map;
   map.depth.encoding = random.of({PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE});
-  map.clipFromWorld = toMatrix(camera.clip * camera.view);
+  map.clipFromWorld = fromGlm(camera.clip * camera.view);
   if (map.depth.encoding != PELLUCID_DEPTH_DEVICE || random.chance(0.3))
-    map.viewFromWorld = toMatrix(camera.view);
+    map.viewFromWorld = fromGlm(camera.view);
   const int side = random.chance(0.05) ? random.whole(1, 4) : random.of({16, 32, 64});
   map.depth.image = Image(side, side, 1);
   const bool exits = sidecars && random.chance(0.3), casters = sidecars && random.chance(0.3);
@@ -162,7 +154,7 @@ void shareImage(Random& random, std::vector<Light>& lights) {
 }
 
 void addMaps(Random& random, bool wild, const Target& target, Light& light) {
-  const glm::dvec3 direction(light.direction[0], light.direction[1], light.direction[2]);
+  const glm::dvec3 direction = toGlm(light.direction);
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
     const int cascades = random.chance(0.8) ? 1 : random.whole(2, 3);
     const glm::dvec3 eye = target.center - direction * target.size * random.real(1, 4);
@@ -171,7 +163,7 @@ void addMaps(Random& random, bool wild, const Target& target, Light& light) {
           randomMap(random, wild, target, mapCamera(random, target, eye, direction, false, 0), cascades < 3));
     return;
   }
-  const glm::dvec3 eye(light.position[0], light.position[1], light.position[2]);
+  const glm::dvec3 eye = toGlm(light.position);
   if (light.type == PELLUCID_LIGHT_POINT && random.chance(0.2)) {
     for (const glm::dvec3 axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0),
                                   glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, 0, -1)})
@@ -191,9 +183,9 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   if (random.chance(0.7)) direction = glm::normalize(direction - 1.5 * viewAxis);
   const double away =
       target.size * (wild && random.chance(0.2) ? random.magnitude(1e-6, 1e6) : random.magnitude(0.6, 10));
-  light.direction = toArray(direction);
+  light.direction = fromGlm(direction);
   const glm::dvec3 position = wild && random.chance(0.1) ? target.center : target.center - direction * away;
-  light.position = toArray(position);
+  light.position = fromGlm(position);
   for (double& c : light.color) c = random.real(0.1, 1);
   light.intensity = random.magnitude(0.1, 20);
   if (light.type != PELLUCID_LIGHT_DIRECTIONAL) {
@@ -217,9 +209,7 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
 // left out: a gather takes its share of that from there.
 void addDirectLight(const Light& light, const View& view, Capture& c) {
   const glm::dmat3 toWorld(view.worldFromView);
-  const glm::dvec3 position(light.position[0], light.position[1], light.position[2]);
-  const glm::dvec3 travel =
-      glm::normalize(glm::dvec3(light.direction[0], light.direction[1], light.direction[2]));
+  const glm::dvec3 position = toGlm(light.position), travel = glm::normalize(toGlm(light.direction));
   std::size_t i = 0;
   for (int y = 0; y < view.height; ++y)
     for (int x = 0; x < view.width; ++x, ++i) {

@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "stress/random.h"
 #include "stress/random_frame.h"
 
 namespace pellucid::harness::stress {

@@ -2,9 +2,11 @@
 
 #include <imgui.h>
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "capture/exr.h"
 #include "capture/read.h"
@@ -18,8 +20,7 @@
 #include "view/input.h"
 #include "view/panel.h"
 #include "view/perception.h"
-#include "view/picture.h"
-#include "view/scripted_input.h"
+#include "view/script.h"
 #include "view/session.h"
 #include "window/window.h"
 
@@ -58,6 +59,51 @@ std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) 
       device, width, height,
       std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
 }
+
+// A script's mouse and keys, in place of the window's.
+class ScriptedInput {
+public:
+  explicit ScriptedInput(std::vector<ScriptLine> lines) : lines_(std::move(lines)) {}
+
+  bool isDone() const { return next_ == lines_.size(); }
+
+  // Before Gui::begin() of a frame: carries out its lines on the state and on Dear ImGui's input. `other`
+  // takes the lines that are about the window and files.
+  void play(int frame, ViewState& state, Changes& changes,
+            const std::function<void(const ScriptLine&)>& other) {
+    if (lines_.empty()) return;
+    for (; next_ < lines_.size() && lines_[next_].frame <= frame; ++next_) {
+      const ScriptLine& line = lines_[next_];
+      if (applyToState(line, state, changes)) continue;
+      if (line.command == "move")
+        cursor_ = {numberOf(line, 0), numberOf(line, 1)};
+      else if (line.command == "wheel")
+        ImGui::GetIO().MouseWheel = numberOf(line, 0);
+      else if (line.command == "press")
+        held_.insert(line.arguments.front());
+      else if (line.command == "release")
+        held_.erase(line.arguments.front());
+      else
+        other(line);
+    }
+    // Every frame anew: a window's own events would say otherwise.
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = cursor_;
+    io.MouseDown[0] = held_.contains("left");
+    io.MouseDown[1] = held_.contains("right");
+    io.MouseDown[2] = held_.contains("middle");
+    io.KeyShift = held_.contains("shift");
+    for (const char* key : {"w", "a", "s", "d", "e", "q"})
+      io.KeysDown[std::toupper(*key)] = held_.contains(key);
+    io.KeysDown[' '] = held_.contains("space");
+  }
+
+private:
+  std::vector<ScriptLine> lines_;
+  std::size_t next_ = 0;
+  ImVec2 cursor_ = {-1, -1};
+  std::set<std::string> held_;  // buttons and keys by their names in scripts
+};
 
 class Application {
 public:
@@ -160,7 +206,7 @@ private:
     gui_->end();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
-      drawPicture(commandBuffer, *display_, *frames_, state_.display, picture, panel_.colors);
+      display_->draw(commandBuffer, *frames_, state_.display, picture, panel_.colors);
       gui_->record(commandBuffer);
       screen_->end(commandBuffer);
     });

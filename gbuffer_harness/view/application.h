@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "view/frame_times.h"
+#include "view/cost.h"
 #include "view/source.h"
 #include "view/state.h"
 

@@ -1,14 +1,14 @@
-// Cost of the module's dispatches over the last frames, and the budget that holds this cost.
+// What frames cost: the dispatches of the last frames, a table of the frames in which the scene moves, and
+// the budget that holds a frame time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <string>
 #include <vector>
 
 #include "replay/replay.h"
-#include "view/frame_budget.h"
-#include "view/state.h"
 
 namespace pellucid::harness {
 
@@ -36,7 +36,45 @@ private:
   std::uint64_t last_ = 0;
 };
 
-// Whelan 2009, 6.2.5, by stepBudget.
+// Milliseconds.
+struct FrameTime {
+  double frame = 0;                   // wall clock, from input to the finished screen, without presenting it
+  double scene = 0;                   // wall clock, of drawing what the module reads
+  double rasterizer = 0, module = 0;  // the GPU's clock
+};
+
+class MovingTimes {
+public:
+  // The first frames do not count: drivers compile shaders, and images are allocated.
+  static constexpr std::size_t kLeftOut = 3;
+
+  void add(const FrameTime& time);
+  std::string table() const;  // mean, median and best of all parts; empty without frames
+
+private:
+  std::size_t leftOut_ = 0;
+  std::vector<FrameTime> times_;
+};
+
+// A setting that holds a frame time (Whelan 2009, 6.2.5), and what it was decided from.
+struct BudgetState {
+  std::uint32_t gatherSamples = 16;               // 16 best, 8, 4, 0 cheapest
+  std::uint32_t reuse = 0;                        // 1: reuse; given up last when there is room again
+  std::uint32_t overFrames = 0, underFrames = 0;  // on end above the budget; on end with room for more
+  std::uint32_t settleFrames = 0;                 // times of the setting before that may still arrive
+  std::uint32_t waitFrames = 30;                  // of room before a better setting is tried
+  std::uint32_t raised = 0, heldFrames = 0;       // 1: the last change was upwards; frames since
+  float raisedMs = 0;              // time before the last step upwards; 0: no step to compare with
+  std::uint32_t easierFrames = 0;  // on end well below raisedMs after that step failed
+};
+
+// One frame's time, ms, against the budget. Goes one setting down (reuse first, then samples) after 3 frames
+// on end above the budget, so a setting that fits is reached within 20 frames; one up after waitFrames at
+// most 70 % of it. An upward step that does not hold doubles the wait, until 30 frames on end take 70 % of
+// the time from before it. Times that are negative or not finite, and budgets that are not > 0, change
+// nothing.
+void stepBudget(BudgetState& state, float measuredMs, float budgetMs);
+
 struct Budget {
   bool on = false;
   float milliseconds = 2;

@@ -20,6 +20,13 @@ std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
   return bindings;
 }
 
+// The half of the picture that has false colors, the right one first.
+std::optional<Shown> falseColored(const Display& display) {
+  if (isFalseColor(display.shown)) return display.shown;
+  if (display.split && isFalseColor(display.left)) return display.left;
+  return std::nullopt;
+}
+
 }  // namespace
 
 ScreenRect fitted(const ScreenRect& area, int width, int height) {
@@ -34,6 +41,30 @@ std::optional<Texel> texelAt(const ScreenRect& picture, int width, int height, f
   if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return std::nullopt;
   return Texel{static_cast<int>(u * static_cast<float>(width)),
                static_cast<int>(v * static_cast<float>(height))};
+}
+
+FalseColors falseColorsOf(const Display& display, const ViewFrames& frames) {
+  const std::optional<Shown> shown = falseColored(display);
+  if (!shown || display.falseLow != display.falseHigh) return {display.falseLow, display.falseHigh};
+  const Image& image = frames.image(*shown);
+  const std::vector<std::uint8_t>& material = frames.material();
+  const auto channels = static_cast<std::size_t>(image.channels);
+  const std::size_t channel = std::min(static_cast<std::size_t>(display.channel), channels - 1);
+  float low = INFINITY, high = -INFINITY;
+  for (std::size_t i = 0; i < image.pixels(); ++i) {
+    const float value = image.data[i * channels + channel];
+    if (material[i] == 0 || !(value > -kNoDepth && value < kNoDepth)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(low <= high)) return {};
+  return {low, low < high ? high : low + 1};
+}
+
+ScreenRect legendOf(const Display& display, const ScreenRect& picture) {
+  constexpr float kWidth = 14, kFromLeft = 12, kFromTop = 60;
+  if (!falseColored(display)) return {};
+  return {picture.x + kFromLeft, picture.y + kFromTop, kWidth, std::max(picture.height / 2, 1.0f)};
 }
 
 DisplayPass::DisplayPass(Device& device, const RenderTarget& target)
@@ -60,16 +91,9 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
                                            orWhite(frame.normal),
                                            frame.frontDepth,
                                            host ? host->use() : white_.use()};
-  VkDescriptorImageInfo infos[kBindings];
-  VkWriteDescriptorSet writes[kBindings];
-  for (std::uint32_t i = 0; i < kBindings; ++i) {
-    infos[i] = {sampler_, images[i].view, images[i].layout};
-    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = 1;
-    writes[i].descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    writes[i].pImageInfo = &infos[i];
-  }
+  DescriptorWrites writes;
+  for (std::uint32_t i = 0; i < kBindings; ++i)
+    writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampler_, images[i]);
   if (!(clip.width >= 1 && clip.height >= 1)) return;
   const VkViewport viewport{clip.x, clip.y, clip.width, clip.height, 0, 1};
   const VkRect2D scissor{
@@ -78,7 +102,7 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   vkCmdSetViewport(commandBuffer, 0, 1, &viewport);
   vkCmdSetScissor(commandBuffer, 0, 1, &scissor);
   vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
-  layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes);
+  layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_GRAPHICS, writes.all());
   vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push, &push);
   vkCmdDraw(commandBuffer, 3, 1, 0, 0);
 }
@@ -104,13 +128,24 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   draw(commandBuffer, frames, shown, push, clip);
 }
 
-void DisplayPass::drawLegend(VkCommandBuffer commandBuffer, const ViewFrames& frames,
-                             const ScreenRect& rect) const {
+void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, const Display& display,
+                       const ScreenRect& picture, const FalseColors& colors) const {
+  ScreenRect right = picture;
+  if (display.split) {
+    ScreenRect left = picture;
+    left.width = std::round(picture.width * display.splitAt);
+    right.x += left.width;
+    right.width -= left.width;
+    draw(commandBuffer, frames, display, display.left, picture, left, colors.low, colors.high);
+  }
+  draw(commandBuffer, frames, display, display.shown, picture, right, colors.low, colors.high);
+  const ScreenRect legend = legendOf(display, picture);
+  if (!(legend.width > 0)) return;
   Push push{};
-  push.origin[1] = rect.y;
-  push.extent[1] = rect.height;
+  push.origin[1] = legend.y;
+  push.extent[1] = legend.height;
   push.isLegend = 1;
-  draw(commandBuffer, frames, Shown::After, push, rect);
+  draw(commandBuffer, frames, Shown::After, push, legend);
 }
 
 }  // namespace pellucid::harness

@@ -25,6 +25,17 @@ struct Texel {
 };
 std::optional<Texel> texelAt(const ScreenRect& picture, int width, int height, float x, float y);
 
+// Values at the ends of the false colors.
+struct FalseColors {
+  float low = 0, high = 1;
+};
+
+// As the display sets them; where it does not, those of the pixels that have a material, with low < high.
+FalseColors falseColorsOf(const Display& display, const ViewFrames& frames);
+
+// Rectangle of the legend; empty without false colors.
+ScreenRect legendOf(const Display& display, const ScreenRect& picture);
+
 class DisplayPass {
 public:
   // For targets like `target`. The device must be able to draw.
@@ -35,8 +46,9 @@ public:
   void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, const Display& display, Shown shown,
             const ScreenRect& picture, const ScreenRect& clip, float low, float high) const;
 
-  // The false colors, low at the bottom.
-  void drawLegend(VkCommandBuffer commandBuffer, const ViewFrames& frames, const ScreenRect& rect) const;
+  // Both halves of the picture, and its legend.
+  void draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, const Display& display,
+            const ScreenRect& picture, const FalseColors& colors) const;
 
 private:
   struct Push {

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "capture/material.h"
-#include "metrics/isolated.h"
+#include "metrics/eye.h"
+#include "metrics/spots.h"
 #include "raster/rasterizer.h"
 #include "replay/exposure.h"
 #include "replay/inputs.h"
@@ -56,8 +57,6 @@ std::shared_ptr<const InputImages> drawnInputs(const DrawnFrame& drawn, const Re
   return std::make_shared<const InputImages>(std::move(inputs));
 }
 
-// Reads an output, which has an alpha in most formats.
-
 // RGB as an image of the format holds it.
 void store(float* rgb, VkFormat format) {
   if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
@@ -69,8 +68,7 @@ void store(float* rgb, VkFormat format) {
 
 // Irradiance times albedo: what a replay leaves where no material is.
 Image composited(const Capture& capture, VkFormat format) {
-  Image result = capture.irradiance;
-  for (std::size_t i = 0; i < capture.albedo.data.size(); ++i) result.data[i] *= capture.albedo.data[i];
+  Image result = litAlbedo(capture);
   for (std::size_t i = 0; i < result.pixels(); ++i) store(&result.data[3 * i], format);
   return result;
 }
@@ -96,14 +94,6 @@ bool isOfOnePixel(Shown shown) { return shown != Shown::Tiles && shown != Shown:
 
 VkRect2D rectOf(int x, int y, int width, int height) {
   return {{x, y}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
-}
-
-// Reads an image that the host has.
-Image partOf(const Image& image, const VkRect2D& rect) {
-  Image part(static_cast<int>(rect.extent.width), static_cast<int>(rect.extent.height), image.channels);
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(image.at(rect.offset.x, rect.offset.y + y), part.width * part.channels, part.at(0, y));
-  return part;
 }
 
 double coveredPartOf(const Scene& scene) {
@@ -274,7 +264,7 @@ const Image& ViewFrames::image(Shown shown) const {
 std::vector<float> ViewFrames::value(Shown shown, int x, int y) const {
   const VkRect2D rect = rectOf(x, y, 1, 1);
   const bool isHosts = hasSurfaces_ || images_.count(shown) > 0 || !isOfOnePixel(shown);
-  if (isHosts) return partOf(image(shown), rect).data;
+  if (isHosts) return cropped(image(shown), x, y, 1, 1).data;
   return pixels(shown, scene_.drawn->surfaces(rect), rect).data;
 }
 
@@ -329,7 +319,8 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
       return result;
     }
     case Shown::Truth:
-      return outline().truth ? partOf(outline().truth->image, rect) : Image(width, height, 3);
+      return outline().truth ? cropped(outline().truth->image, rect.offset.x, rect.offset.y, width, height)
+                             : Image(width, height, 3);
     case Shown::Debug:
       return rgb(run(shown).output(rect));
     case Shown::FrontDepth:

@@ -9,7 +9,6 @@
 #include "view/cost.h"
 #include "view/display.h"
 #include "view/frames.h"
-#include "view/picture.h"
 #include "view/source.h"
 #include "view/state.h"
 

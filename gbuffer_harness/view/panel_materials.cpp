@@ -5,7 +5,6 @@
 
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
-#include "view/material_kind.h"
 #include "view/panel.h"
 
 namespace pellucid::harness {

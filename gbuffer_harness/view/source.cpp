@@ -11,10 +11,9 @@
 
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
-#include "metrics/masked_image.h"
+#include "metrics/surface.h"
 #include "raster/bodies.h"
 #include "raster/rasterizer.h"
-#include "reference/camera.h"
 #include "scene/model.h"
 #include "scene/render.h"
 #include "scene/vector.h"
@@ -40,15 +39,17 @@ std::vector<Light> lit(const std::vector<ViewLight>& lights) {
 class ModelSource : public Source {
 public:
   ModelSource(Device& device, Model model, const ModelCamera& camera, const RasterOptions& raster)
-      : model_(std::move(model)), raster_(raster), bounds_(boundsOf(model_)), rasterizer_(device, model_) {
+      : model_(std::move(model)), raster_(raster), rasterizer_(device, model_) {
+    const Bounds bounds = boundsOf(model_);
+    center_ = bounds.center;
+    radius_ = bounds.radius;
     start_.width = raster.width;
     start_.height = raster.height;
-    start_.camera = {camera, bounds_.center};
+    start_.camera = {camera, center_};
     start_.lights = viewLights(model_.lights);
     start_.materials = model_.materials;
   }
 
-  ViewState start() const override { return start_; }
   bool drawsMaterials() const override {
     return std::any_of(model_.surfaces.begin(), model_.surfaces.end(),
                        [](const Surface& surface) { return surface.hasReflectance; });
@@ -56,8 +57,6 @@ public:
   std::vector<MaterialSource> materials(const ViewState& state) const override {
     return withBodies(state.materials, model_.bodies);
   }
-  Vector3 center() const override { return bounds_.center; }
-  double radius() const override { return bounds_.radius; }
 
   Scene render(const ViewState& state) override {
     RasterOptions options = raster_;
@@ -91,9 +90,7 @@ private:
   Model model_;
   std::map<std::string, std::array<double, 3>> reflectances_;  // of compiled materials, by their JSON
   RasterOptions raster_;
-  Bounds bounds_;
   Rasterizer rasterizer_;  // of model_
-  ViewState start_;
 };
 
 class SceneSource : public Source {
@@ -101,8 +98,12 @@ public:
   SceneSource(const SceneParameters& parameters, const std::vector<MaterialSource>& materials)
       : parameters_(parameters), scene_(sceneModel(parameters)) {
     scene_.materials = materials;
+    center_ = fromGlm(scene_.center);
+    radius_ = scene_.radius;
+    if (scene_.endless) fixedCamera_ = "this scene has no end, so its camera stays where it is";
+    if (scene_.paint) fixedLights_ = "this scene has a painted irradiance, and no lights";
     ViewCamera& camera = start_.camera;
-    camera.pivot = center();
+    camera.pivot = center_;
     camera.lens.name = parameters.name;
     camera.lens.viewFromWorld = scene_.camera.viewFromWorld;
     camera.lens.orthographic = scene_.camera.orthographic;
@@ -117,16 +118,6 @@ public:
     start_.height = parameters.height;
     start_.lights = viewLights(scene_.lights);
     start_.materials = materials;
-  }
-
-  ViewState start() const override { return start_; }
-  Vector3 center() const override { return fromGlm(scene_.center); }
-  double radius() const override { return scene_.radius; }
-  std::string fixedCamera() const override {
-    return scene_.endless ? "this scene has no end, so its camera stays where it is" : "";
-  }
-  std::string fixedLights() const override {
-    return scene_.paint ? "this scene has a painted irradiance, and no lights" : "";
   }
 
   Scene render(const ViewState& state) override {
@@ -149,7 +140,6 @@ public:
 private:
   SceneParameters parameters_;
   SceneModel scene_;
-  ViewState start_;
 };
 
 class CaptureSource : public Source {
@@ -163,15 +153,10 @@ public:
     for (const Light& light : capture_.lights) maps_.push_back(light.shadowMaps);
     findCenter();
     start_.camera.pivot = center_;
-  }
-
-  ViewState start() const override { return start_; }
-  Vector3 center() const override { return center_; }
-  double radius() const override { return radius_; }
-  std::string fixedCamera() const override { return "a capture is seen by its own camera"; }
-  std::string fixedLights() const override {
-    return "the irradiance is the capture's: lights change what comes through, and stay where their shadow "
-           "maps were drawn";
+    fixedCamera_ = "a capture is seen by its own camera";
+    fixedLights_ =
+        "the irradiance is the capture's: lights change what comes through, and stay where their shadow maps "
+        "were drawn";
   }
 
   Scene render(const ViewState& state) override {
@@ -192,16 +177,11 @@ private:
     const reference::Camera camera(capture_.clipFromView, capture_.width, capture_.height);
     const glm::dmat4 world = glm::inverse(toGlm(capture_.viewFromWorld));
     glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (int y = 0; y < capture_.height; ++y)
-      for (int x = 0; x < capture_.width; ++x) {
-        const std::size_t i = pixelIndex(capture_.frontDepth.image, x, y);
-        const std::optional<double> depth =
-            camera.planarDepth(capture_.frontDepth.image.data[i], capture_.frontDepth.encoding);
-        if (capture_.material[i] == 0 || !depth) continue;
-        const glm::dvec3 p(world * glm::dvec4(camera.position({x + 0.5, y + 0.5}, *depth), 1));
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-      }
+    forEachSurface(capture_, camera, [&](int x, int y, double depth) {
+      const glm::dvec3 p(world * glm::dvec4(camera.position({x + 0.5, y + 0.5}, depth), 1));
+      low = glm::min(low, p);
+      high = glm::max(high, p);
+    });
     if (!(low.x <= high.x)) return;
     center_ = fromGlm(0.5 * (low + high));
     radius_ = std::max(0.5 * glm::length(high - low), 1e-9);
@@ -209,9 +189,6 @@ private:
 
   Capture capture_;
   std::vector<std::vector<ShadowMap>> maps_;
-  ViewState start_;
-  Vector3 center_ = {0, 0, 0};
-  double radius_ = 1;
 };
 
 }  // namespace

@@ -24,8 +24,6 @@ class Source {
 public:
   virtual ~Source() = default;
 
-  virtual ViewState start() const = 0;  // as it is opened: size, camera, lights, materials
-
   // Throws what the maker of captures throws.
   virtual Scene render(const ViewState& state) = 0;
 
@@ -35,13 +33,20 @@ public:
   // True where the scene's colors are those of its materials, which have to be drawn anew with them.
   virtual bool drawsMaterials() const { return false; }
 
-  virtual Vector3 center() const = 0;  // world; what lights are dragged round
-  virtual double radius() const = 0;   // scene units, > 0
+  const ViewState& start() const { return start_; }  // as it is opened: size, camera, lights, materials
+  const Vector3& center() const { return center_; }  // world; what lights are dragged round
+  double radius() const { return radius_; }          // scene units, > 0
 
   // Empty where camera and size, or the lights' part of the irradiance, can change; else a sentence that says
   // why not.
-  virtual std::string fixedCamera() const { return {}; }
-  virtual std::string fixedLights() const { return {}; }
+  const std::string& fixedCamera() const { return fixedCamera_; }
+  const std::string& fixedLights() const { return fixedLights_; }
+
+protected:
+  ViewState start_;
+  Vector3 center_ = {0, 0, 0};
+  double radius_ = 1;
+  std::string fixedCamera_, fixedLights_;
 };
 
 // Drawn by the device's rasterizer, which throws where the device cannot draw. The images stay on the device.

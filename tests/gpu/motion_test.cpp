@@ -6,7 +6,7 @@
 #include "common/far_origin.h"
 #include "metrics/flicker.h"
 #include "metrics/moved_capture.h"
-#include "replay/world_origin.h"
+#include "replay/exposure.h"
 #include "scene/scene.h"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "capture/material.h"
-#include "cli/nearest_distance.h"
+#include "cli/capture_checks.h"
 #include "common/compare.h"
 #include "common/error.h"
 #include "gpu/gpu_fixture.h"

@@ -15,7 +15,7 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/settings.h"
-#include "cli/stress_failure.h"
+#include "cli/stress.h"
 
 namespace {
 

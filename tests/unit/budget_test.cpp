@@ -9,7 +9,7 @@
 #include <iterator>
 #include <random>
 
-#include "view/frame_budget.h"
+#include "view/cost.h"
 
 namespace {
 

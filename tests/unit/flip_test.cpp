@@ -1,5 +1,5 @@
 // FLIP against what its definition says of simple pairs, and against its authors' implementation.
-#include "metrics/flip.h"
+#include "metrics/eye.h"
 
 #include <gtest/gtest.h>
 

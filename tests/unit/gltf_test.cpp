@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "capture/material.h"
-#include "cli/light_option.h"
+#include "cli/capture_options.h"
 #include "common/png.h"
 #include "gltf/material.h"
 #include "gltf_fixture.h"

@@ -9,12 +9,9 @@
 #include "common/error.h"
 #include "metrics/eye.h"
 #include "metrics/flicker.h"
-#include "metrics/isolated.h"
 #include "metrics/moved_capture.h"
-#include "metrics/ratio_map.h"
 #include "metrics/spots.h"
 #include "metrics/surface.h"
-#include "metrics/tint.h"
 #include "reference/camera.h"
 
 namespace pellucid::harness {

@@ -1,12 +1,10 @@
 // Minimum dots: the float64 reference's entries and blends by light direction, and measured tables of them.
-#include "reference/minimum_dot.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/glm.hpp>
 
-#include "cli/minimum_dot_table.h"
+#include "cli/measure_dots.h"
 #include "common/error.h"
 #include "reference/translucency.h"
 #include "scene/vector.h"

@@ -12,7 +12,6 @@
 #include "scene/turn.h"
 #include "temporary_directory.h"
 #include "view/input.h"
-#include "view/material_kind.h"
 #include "view/script.h"
 #include "view/session.h"
 
@@ -111,12 +110,8 @@ TEST(ViewLights, PullKeepsWhatArrives) {
 // A sphere of radius 1 that nothing renders.
 class FakeSource : public Source {
 public:
-  ViewState start() const override { return {}; }
   Scene render(const ViewState&) override { return {}; }
-  Vector3 center() const override { return {0, 0, 0}; }
-  double radius() const override { return 1; }
-  std::string fixedCamera() const override { return fixed ? "fixed" : ""; }
-  bool fixed = false;
+  void fix() { fixedCamera_ = "fixed"; }
 };
 
 struct Drag {
@@ -149,7 +144,7 @@ TEST(ViewInput, DragOrbitsHalfATurnAPicture) {
   EXPECT_TRUE(d.drag(200, 200, 400, 200).scene);
   expectNear(d.state.camera.eye(), {-5, 0, 0}, kRounding);  // the model turns right, so the camera goes left
   Drag fixed;
-  fixed.source.fixed = true;
+  fixed.source.fix();
   EXPECT_FALSE(fixed.drag(200, 200, 400, 200).any());
 }
 

@@ -11,12 +11,12 @@ namespace pellucid::harness::reference {
 namespace {
 
 // Share of the scene's radius; solids find their surfaces to 1e-9 mm.
-constexpr double kOffset = 1e-6;
+constexpr double kSolidOffset = 1e-6;
 
 class SolidScene : public TraceScene {
 public:
   explicit SolidScene(const SceneModel& model)
-      : TraceScene(glm::dvec3(0), 1), model_(model), offset_(kOffset * model.radius) {}
+      : TraceScene(glm::dvec3(0), 1), model_(model), offset_(kSolidOffset * model.radius) {}
 
   std::optional<SurfacePoint> first(const Ray& ray, double from) const override {
     const std::optional<Hit> hit = firstHit(model_.objects, ray, from);

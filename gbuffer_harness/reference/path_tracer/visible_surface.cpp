@@ -16,7 +16,7 @@ namespace {
 constexpr double kShifts[][2] = {{0, 0},  {.05, 0}, {-.05, 0}, {0, .05}, {0, -.05},
                                  {.4, 0}, {-.4, 0}, {0, .4},   {0, -.4}};
 
-std::optional<SurfacePoint> find(const Camera& camera, const Capture& capture, const TraceScene& scene, int x,
+std::optional<SurfacePoint> find(const harness::Camera& camera, const Capture& capture, const TraceScene& scene, int x,
                                  int y) {
   for (const auto& [dx, dy] : kShifts) {
     const Ray world = camera.ray(x + 0.5 + dx, y + 0.5 + dy, capture.width, capture.height);
@@ -26,8 +26,8 @@ std::optional<SurfacePoint> find(const Camera& camera, const Capture& capture, c
   return std::nullopt;
 }
 
-Camera cameraOf(const Capture& capture) {
-  Camera camera;
+harness::Camera cameraOf(const Capture& capture) {
+  harness::Camera camera;
   camera.clipFromView = capture.clipFromView;
   camera.viewFromWorld = capture.viewFromWorld;
   camera.orthographic = capture.clipFromView[11] == 0;  // w does not go by z
@@ -39,7 +39,7 @@ Camera cameraOf(const Capture& capture) {
 VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene) {
   if (capture.clipFromView[11] > 0)
     throw InputError(capture.name, "camera.clipFromView", "looks along +z; rays are cast along -z");
-  const Camera camera = cameraOf(capture);
+  const harness::Camera camera = cameraOf(capture);
   VisibleSurface surface{capture.width, capture.height, {}, 0};
   surface.points.resize(capture.material.size());
   std::vector<std::size_t> missed(static_cast<std::size_t>(capture.height));
@@ -56,7 +56,7 @@ VisibleSurface visibleSurface(const Capture& capture, const TraceScene& scene) {
 }
 
 VisibleSurface hiddenSurface(const Capture& capture, const TraceScene& scene, const VisibleSurface& visible) {
-  const Camera camera = cameraOf(capture);
+  const harness::Camera camera = cameraOf(capture);
   VisibleSurface hidden{visible.width, visible.height, {}, 0};
   hidden.points.resize(visible.points.size());
   parallelRows(visible.height, 0, [&](int y) {

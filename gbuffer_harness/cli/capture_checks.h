@@ -1,6 +1,7 @@
-// The setting nearest-distance against a capture.
+// Properties of a capture for which its results are wrong.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "capture/capture.h"
@@ -13,5 +14,11 @@ namespace pellucid::harness {
 // nearest pixel. A setting of 0 promises nothing, and an orthographic camera needs no promise.
 void requireNearestDistance(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                             const ReplaySettings& settings);
+
+// A sentence for each material whose transport mean free path, 1 / (reduced scattering + absorption), is more
+// than a quarter of a size. It is that of the material's largest piece that the camera sees whole: the middle
+// one of width, height and thickness. Light then leaves by the sides, where T(d) of a slab and the diffusion
+// of a half-space have none. `materials`: compiled.
+std::vector<std::string> thinBodies(const Capture& capture, const std::vector<PellucidMaterial>& materials);
 
 }  // namespace pellucid::harness
