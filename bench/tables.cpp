@@ -80,14 +80,19 @@ Words valuesOf(const std::vector<const Json*>& rows, const char* field) {
   return values;
 }
 
+// The two sizes that pages show, or all where the run has neither.
+Words sizesShown(const std::vector<const Json*>& rows) {
+  Words sizes;
+  for (const std::string& size : valuesOf(rows, "size"))
+    if (size == "1920x1080" || size == "3840x2160") sizes.push_back(size);
+  return sizes.empty() ? valuesOf(rows, "size") : sizes;
+}
+
 // Whole frames beside their errors: a row a method, a column a frame. A cell has the times of two sizes, and
 // then the error of the first.
 std::string framesTable(const Json& results) {
   const auto frames = frameRows(results, "frame"), rows = frameRows(results, "whole");
-  Words sizes;
-  for (const std::string& size : valuesOf(rows, "size"))
-    if (size == "1920x1080" || size == "3840x2160") sizes.push_back(size);
-  if (sizes.empty()) sizes = valuesOf(rows, "size");
+  const Words sizes = sizesShown(rows);
   std::string listed;
   for (const std::string& size : sizes) listed.append(listed.empty() ? "" : " / ").append(size);
   Words columns = {""};
@@ -96,8 +101,8 @@ std::string framesTable(const Json& results) {
         std::find_if(frames.begin(), frames.end(), [&](const Json* f) { return f->at("frame") == frame; });
     columns.push_back(format("%s (%.3f)", frame.c_str(), number(**first, "covered")));
   }
-  std::string table = runOf(results) + "; microseconds at " + listed +
-                      ", then the error; in brackets: the covered part:\n\n" + header(columns);
+  std::string table = runOf(results) + "; times in microseconds at " + listed +
+                      ", then the error; in brackets: the part of the image with material:\n\n" + header(columns);
   for (const std::string& name : valuesOf(rows, "name")) {
     table += "| " + name + " |";
     for (const std::string& frame : valuesOf(frames, "frame")) {
@@ -142,6 +147,53 @@ std::string contextTable(const Json& results) {
                      number(r, "cpu_us") / 1e6);
   if (rows.empty()) throw InputError("", "results", "no times in section \"context creation\"");
   return runOf(results) + "; seconds:\n\n" + header({"", "wall clock", "CPU, all threads"}) + rows;
+}
+
+// Rows of the section "paths" of a kind.
+std::vector<const Json*> pathRows(const Json& results, const char* kind) {
+  std::vector<const Json*> rows;
+  for (const Json& row : results.at("results"))
+    if (row.at("section") == "paths" && row.at("kind") == kind) rows.push_back(&row);
+  if (rows.empty()) throw InputError("", "results", std::string("no rows \"") + kind + "\" in section \"paths\"");
+  return rows;
+}
+
+// A row a change, a column a method: RMSE and 99.9th percentile in red.
+std::string pathsTable(const Json& results) {
+  const auto rows = pathRows(results, "path");
+  Words columns = {"change"};
+  for (const std::string& name : valuesOf(rows, "name")) columns.push_back(name);
+  std::string table = word(results, "device") + ", commit `" + word(results, "commit") +
+                      "`; flicker in red: RMSE, 99.9th percentile:\n\n" + header(columns);
+  for (const std::string& change : valuesOf(rows, "change")) {
+    table += "| " + change + " |";
+    for (std::size_t i = 1; i < columns.size(); ++i) {
+      const auto row = std::find_if(rows.begin(), rows.end(), [&](const Json* r) {
+        return r->at("change") == change && r->at("name") == columns[i];
+      });
+      table += row == rows.end() ? " |"
+                                 : format(" %.4f, %.2f |", number((*row)->at("flicker_rgb").at(0)),
+                                          number((*row)->at("p999_rgb").at(0)));
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+// A row a frame and size: time with an anchor, and with accumulation too.
+std::string accumulationTable(const Json& results) {
+  const auto rows = pathRows(results, "accumulation");
+  std::string table = runOf(results) + "; microseconds:\n\n" + header({"frame", "anchor", "accumulated", "more"});
+  for (const std::string& size : sizesShown(rows))
+    for (const std::string& frame : valuesOf(rows, "frame")) {
+      double us[2] = {0, 0};
+      for (const Json* row : rows)
+        if (row->at("size") == size && row->at("frame") == frame) us[row->at("accumulates").get<bool>()] = number(*row, "us");
+      if (!(us[0] > 0 && us[1] > 0)) continue;
+      table += format("| %s, %s | %.0f | %.0f | %.1f %% |\n", frame.c_str(), size.c_str(), us[0], us[1],
+                      100 * (us[1] / us[0] - 1));
+    }
+  return table;
 }
 
 std::string rgbCell(const Json& row, const char* field) {
@@ -267,7 +319,8 @@ struct Table {
 constexpr Table kTables[] = {{"frames", ofOne<framesTable>},   {"frame_host", ofOne<frameHostTable>},
                              {"context", ofOne<contextTable>}, {"truth", ofOne<truthTable>},
                              {"engine", ofOne<engineTable>},   {"headline", headlineTable},
-                             {"samples", samplesTable}};
+                             {"samples", samplesTable},       {"paths", ofOne<pathsTable>},
+                             {"accumulation", ofOne<accumulationTable>}};
 
 }  // namespace
 
