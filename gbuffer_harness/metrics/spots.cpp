@@ -204,10 +204,10 @@ Image litAlbedo(const Capture& capture) {
 
 std::vector<std::uint8_t> markSpots(std::vector<std::uint8_t> picture, const Image& image,
                                     const std::vector<Spot>& spots, const std::vector<Spot>& lacked) {
-  constexpr std::array<std::uint8_t, 3> kBright = {255, 230, 40}, kDark = {40, 230, 255};
+  constexpr std::array<std::uint8_t, 3> kBrightColor = {255, 230, 40}, kDarkColor = {40, 230, 255};
   constexpr int kAway = 2;  // pixels from the spot, which stays visible with its neighbors
   const auto draw = [&](const Spot& spot, int divisor) {
-    std::array<std::uint8_t, 3> color = spot.isBright ? kBright : kDark;
+    std::array<std::uint8_t, 3> color = spot.isBright ? kBrightColor : kDarkColor;
     for (std::uint8_t& channel : color) channel = static_cast<std::uint8_t>(channel / divisor);
     const int left = spot.low[0] - kAway, right = spot.high[0] + kAway;
     const int top = spot.low[1] - kAway, bottom = spot.high[1] + kAway;

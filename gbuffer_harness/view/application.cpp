@@ -95,7 +95,7 @@ public:
     io.KeyShift = held_.contains("shift");
     for (const char* key : {"w", "a", "s", "d", "e", "q"})
       io.KeysDown[std::toupper(*key)] = held_.contains(key);
-    io.KeysDown[' '] = held_.contains("space");
+    io.KeysDown[int{' '}] = held_.contains("space");
   }
 
 private:
