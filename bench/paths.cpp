@@ -25,7 +25,6 @@ namespace {
 constexpr int kPathSize = 512, kPathFrames = 24;  // as docs/accuracy.md has them
 constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
 constexpr int kStill = 16;                // frames before a move
-constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
 constexpr const char* kPublished[] = {"Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
 constexpr Color kColors[] = {{0, 0, 0}, {0, 90, 200}, {0, 150, 60}, {130, 130, 130}, {230, 180, 0}, {200, 60, 0}, {170, 0, 150}};
 
@@ -152,14 +151,9 @@ private:
     return all;
   }
 
-  // The mean of the frames' RMSE, and the largest 99.9th percentile.
   void add(const std::string& change, const std::string& method, const std::vector<Flicker>& steps) {
-    std::array<double, 3> rmse = {}, p999 = {};
-    for (const Flicker& step : steps)
-      for (std::size_t c = 0; c < 3; ++c) {
-        rmse[c] += step.relativeRmse[c] / static_cast<double>(steps.size());
-        p999[c] = std::max(p999[c], step.p999[c]);
-      }
+    const Flicker all = flickerOf(steps);
+    const auto &rmse = all.relativeRmse, &p999 = all.p999;
     char text[120];
     std::snprintf(text, sizeof text, "  %-34s %.4f %.4f %.4f  %.3f %.3f %.3f", method.c_str(), rmse[0], rmse[1], rmse[2],
                   p999[0], p999[1], p999[2]);

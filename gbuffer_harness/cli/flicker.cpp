@@ -171,22 +171,8 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
   return rows;
 }
 
-// The mean of the frames' RMSE, and the largest of what single pixels change.
 Row rowOf(std::string change, std::vector<Flicker> steps) {
-  Row row{std::move(change), {}, std::nullopt, {}};
-  double largest = -1;
-  for (const Flicker& step : steps)
-    for (std::size_t c = 0; c < 3; ++c) {
-      row.flicker.pixels = std::max(row.flicker.pixels, step.pixels);
-      row.flicker.relativeRmse[c] += step.relativeRmse[c] / static_cast<double>(steps.size());
-      row.flicker.p999[c] = std::max(row.flicker.p999[c], step.p999[c]);
-      row.flicker.worst[c] = std::max(row.flicker.worst[c], step.worst[c]);
-      if (step.worst[c] <= largest) continue;
-      largest = step.worst[c];
-      row.flicker.worstPixel = step.worstPixel;
-    }
-  row.steps = std::move(steps);
-  return row;
+  return {std::move(change), flickerOf(steps), std::nullopt, std::move(steps)};
 }
 
 // Frames of a path, and below each how it differs from the frame before.

@@ -179,6 +179,22 @@ Image Reprojection::motion() const {
   return motion;
 }
 
+Flicker flickerOf(const std::vector<Flicker>& steps) {
+  Flicker all;
+  double largest = -1;
+  for (const Flicker& step : steps)
+    for (std::size_t c = 0; c < 3; ++c) {
+      all.pixels = std::max(all.pixels, step.pixels);
+      all.relativeRmse[c] += step.relativeRmse[c] / static_cast<double>(steps.size());
+      all.p999[c] = std::max(all.p999[c], step.p999[c]);
+      all.worst[c] = std::max(all.worst[c], step.worst[c]);
+      if (step.worst[c] <= largest) continue;
+      largest = step.worst[c];
+      all.worstPixel = step.worstPixel;
+    }
+  return all;
+}
+
 SpotFlicker compareSpots(const SpotImage& still, const SpotImage& stillInput, const SpotImage& turned,
                          const SpotImage& turnedInput) {
   const std::vector<Spot> ofStill = still.find(&stillInput), ofTurned = turned.find(&turnedInput);

@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "metrics/masked_image.h"
 #include "metrics/spots.h"
@@ -61,6 +62,9 @@ private:
   reference::Camera earlierCamera_, laterCamera_;
   glm::dmat4 earlierFromLater_;
 };
+
+// Of a path: the mean of its steps' RMSE, and the largest of each other statistic.
+Flicker flickerOf(const std::vector<Flicker>& steps);
 
 // Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
 struct SpotFlicker {

@@ -1,8 +1,8 @@
 #include "raster/camera_path.h"
 
 #include <algorithm>
-#include <array>
 #include <glm/glm.hpp>
+#include <iterator>
 #include <numbers>
 
 #include "common/error.h"
@@ -13,8 +13,6 @@
 namespace pellucid::harness {
 
 namespace {
-
-constexpr std::array kPaths = {"pan", "dolly", "orbit", "head", "lights", "blink"};
 
 // A camera turned about its own upright axis.
 Matrix panned(const Matrix& viewFromWorld, double angle) {
@@ -33,13 +31,13 @@ Matrix movedAway(const Matrix& viewFromWorld, const Vector3& center, double part
 
 std::string pathSyntax() {
   std::string text = kPaths[0];
-  for (std::size_t i = 1; i < kPaths.size(); ++i) text += (i + 1 < kPaths.size() ? ", " : " or ") + std::string(kPaths[i]);
+  for (std::size_t i = 1; i < std::size(kPaths); ++i) text += (i + 1 < std::size(kPaths) ? ", " : " or ") + std::string(kPaths[i]);
   return text;
 }
 
 CameraPath::CameraPath(const std::string& name, const Model& model, const ModelCamera& camera)
     : name_(name), still_{camera, model.lights, false}, center_(boundsOf(model).center) {
-  if (std::find(kPaths.begin(), kPaths.end(), name) == kPaths.end())
+  if (std::find(std::begin(kPaths), std::end(kPaths), name) == std::end(kPaths))
     throw UsageError("--path: \"" + name + "\" is not " + pathSyntax());
   if (model.lights.empty() && (name == "lights" || name == "blink"))
     throw UsageError("--path " + name + ": the scene has no lights");

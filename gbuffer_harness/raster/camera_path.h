@@ -14,7 +14,8 @@ inline constexpr double kPathDegrees = 0.5, kPathDolly = 0.01;
 // Frames for which the last light of a blink stays on or off.
 inline constexpr int kBlinkFrames = 6;
 
-// "pan, dolly, orbit, head, lights or blink".
+inline constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
+// The names as a sentence lists them.
 std::string pathSyntax();
 
 class CameraPath {
