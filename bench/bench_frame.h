@@ -1,5 +1,5 @@
-// Passes that are not the module's, and a frame on the device for them: they read the images and constants
-// that the module's plan binds.
+// Passes of published methods, and a frame on the device for these passes, which read the images and constants that the
+// module's plan binds.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace pellucid::bench {
 
-// What a binding holds.
+// The image or buffer of a binding.
 using Resource = std::variant<PellucidImage, VkDescriptorBufferInfo>;
 
 // How many pixels one workgroup does, and the constants 0.. that say so to the shader.
@@ -45,7 +45,7 @@ private:
   harness::Pipeline pipeline_;
 };
 
-// What one dispatch writes, the next may read and overwrite.
+// The next dispatch may read and overwrite the writes of the dispatch before.
 inline void computeBarrier(VkCommandBuffer commandBuffer) {
   harness::barrier(commandBuffer, {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT},
                    harness::kComputing);
@@ -60,7 +60,7 @@ struct Variant {
   std::function<harness::Image()> output;       // RGB; after a run
 };
 
-// Of a run.
+// The output of a run of the variant.
 harness::Image outputOf(harness::Device& device, const Variant& variant);
 
 class BenchFrame {
@@ -87,7 +87,7 @@ public:
 
   // A cleared image of the frame's size.
   std::shared_ptr<harness::GpuImage> image(VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT) const;
-  // Of so many images of the default format.
+  // Bytes of so many images of the default format.
   std::uint64_t bytesOf(std::uint64_t images) const;
 
 private:

@@ -54,7 +54,7 @@ void addWord(std::string& command, const std::string& word) {
   command += "'";
 }
 
-// What a process of this program with these arguments and variables says.
+// The output of a process of this program with these arguments and variables.
 Cost createdBy(std::vector<std::string> arguments, const std::string& device, const Environment& variables) {
   arguments.push_back("--create-context");
   if (!device.empty()) arguments.insert(arguments.end(), {"--device", device});

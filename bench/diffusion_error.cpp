@@ -50,7 +50,7 @@ std::vector<ErrorScene> errorScenes() {
       {"ear", "ear", {}, 92}};
 }
 
-// Of each pixel with a material, from 4 x 4 points of it.
+// The irradiance of each pixel with a material is the mean of a checker over 4 x 4 points of the pixel.
 void paintChecker(Capture& capture, double side) {
   constexpr double kAngle = 17 * std::numbers::pi / 180;
   constexpr int kPoints = 4;
@@ -152,7 +152,7 @@ struct Bench {
   }
 };
 
-// Of each scene, and their root mean square.
+// The error of each scene, and the root mean square of these errors.
 void printScenes(Bench& bench, const std::vector<double>& radii) {
   std::printf("| scene, %d x %d pixels |", bench.size, bench.size);
   for (const double radius : radii) std::printf(" %g px |", radius);

@@ -29,7 +29,7 @@ constexpr double kDiscarded = 1e-4;
 constexpr int kBox = 4;      // pixels a side of the averages that `pellucid evaluate` compares
 constexpr int kVersion = 2;  // of what the hash stands for
 
-// Of all that the diffusion depends on.
+// A hash of each input that the diffusion depends on.
 size_t hashOf(const Capture& c, const std::vector<PellucidMaterial>& materials, int count) {
   size_t hash = 0;
   const auto add = [&](const auto* values, size_t size) {

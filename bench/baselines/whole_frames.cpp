@@ -199,15 +199,29 @@ TransmittancePass burleyTransmittance(const std::shared_ptr<const BenchFrame>& f
   return transmittance(frame, "HDRP, Burley's slab", kBurleyTransmittance, {{d[0], d[1], d[2], 0}});
 }
 
+namespace {
+
+WholeFrame separableFrame(const std::shared_ptr<const BenchFrame>& frame, int taps, const TransmittancePass& light) {
+  return inTurn("Jimenez 2010 + 2015, " + std::to_string(taps) + " taps", light.variant,
+                separable(frame, taps, light.image));
+}
+
+WholeFrame diskFrame(const std::shared_ptr<const BenchFrame>& frame, int samples, const TransmittancePass& light) {
+  return inTurn("HDRP, " + std::to_string(samples) + " samples", light.variant, burleyDisk(frame, samples, light.image));
+}
+
+}  // namespace
+
+std::vector<WholeFrame> fastestWholeFrames(const std::shared_ptr<const BenchFrame>& frame) {
+  return {separableFrame(frame, kSeparableTaps[0], gaussianTransmittance(frame)),
+          diskFrame(frame, kBurleySamples[0], burleyTransmittance(frame))};
+}
+
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame) {
   const TransmittancePass gaussians = gaussianTransmittance(frame), slab = burleyTransmittance(frame);
   std::vector<WholeFrame> all;
-  for (const int taps : kSeparableTaps)
-    all.push_back(inTurn("Jimenez 2010 + 2015, " + std::to_string(taps) + " taps", gaussians.variant,
-                         separable(frame, taps, gaussians.image)));
-  for (const int samples : kBurleySamples)
-    all.push_back(inTurn("HDRP, " + std::to_string(samples) + " samples", slab.variant,
-                         burleyDisk(frame, samples, slab.image)));
+  for (const int taps : kSeparableTaps) all.push_back(separableFrame(frame, taps, gaussians));
+  for (const int samples : kBurleySamples) all.push_back(diskFrame(frame, samples, slab));
   all.push_back(
       inTurn("Jimenez 2009, six Gaussians", gaussians.variant, gaussianSum(frame, gaussians.image)));
   return all;

@@ -50,6 +50,8 @@ struct WholeFrame {
 // Jimenez et al. 2010 and 2015, the six Gaussians of 2009 in place of the latter, and HDRP's, in the sizes
 // that are in use. `frame`: of transmittanceSettings().
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame);
+// The fastest of Jimenez et al.'s and the fastest of HDRP's.
+std::vector<WholeFrame> fastestWholeFrames(const std::shared_ptr<const BenchFrame>& frame);
 
 // The module's translucency against its T(d) on a slab; the transmittance passes against float64 evaluations
 // of their equations on the CPU, on the slab, whose answer is closed, and on an ear under three lights; the
