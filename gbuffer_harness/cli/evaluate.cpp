@@ -17,7 +17,6 @@
 #include "common/plot.h"
 #include "common/png.h"
 #include "metrics/eye.h"
-#include "reference/reference.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
@@ -169,7 +168,7 @@ struct Options {
   std::string output, device, picture, plot, rows = "models";
   EvaluationBoxes boxes;
   double exposure = 0;
-  bool reference = false, json = false;
+  bool json = false;
 };
 
 struct Model {
@@ -204,14 +203,6 @@ Image replayed(Replayer& replayer, const Capture& capture, const std::vector<Pel
                ReplaySettings settings) {
   settings.preExposure = 0;  // as `pellucid replay` has it
   return rgb(replayer.run(capture, materials, settings).output);
-}
-
-// What the samples converge to, over brute-force diffusion.
-Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
-  reference::Settings settings;
-  settings.translucency.gatherSamples = 64;
-  settings.diffusion.discardedEnergy = 1e-3;
-  return reference::compute(capture, materials, settings).image;
 }
 
 // thesis | light-space thickness | the default | truth, under one exposure.
@@ -272,7 +263,6 @@ void run(const Options& options) {
     };
     for (const Model& model : options.rows == "models" ? models() : samples())
       add(model.name, replayed(replayer, capture, materials, model.settings));
-    if (options.reference) add("float64: all texels, exact diffusion", allTexels(capture, materials));
     if (!options.picture.empty() && &path == &options.captures.front())
       writePicture(options.picture, capture, materials, replayer);
     if (!options.plot.empty()) {
@@ -313,8 +303,6 @@ void addEvaluateCommand(const Command& app) {
       .option("--box-coverage", options->boxes.coverage,
               "part of an average's pixels that must be surface, else it is left out")
       .range(0.0, 1.0);
-  command.flag("--reference", options->reference,
-               "add the float64 gather over all texels with brute-force diffusion; takes minutes");
   command.option("--picture", options->picture,
                  "PNG of the first capture: thesis, light-space thickness, the default, truth");
   command.option("--plot", options->plot, "PNG of the error against the samples of the gather");

@@ -37,12 +37,6 @@ private:
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 
-// Replaces the samples by those of the module's plan for the capture, which has none where it does not
-// gather, for what is not the module. `materials`: with their own T(d). Throws InputError where the module
-// refuses the frame.
-void resolveGather(ReplaySettings& settings, const Capture& capture,
-                   const std::vector<PellucidMaterial>& materials);
-
 // --preset of the commands that read captures.
 void addPresetOption(const Command& command, ManifestPreset& preset);
 

@@ -302,15 +302,6 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
   return blocks;
 }
 
-std::size_t Gather::hiddenTexels() const {
-  std::size_t count = 0;
-  for (const Blocks& blocks : lights_)
-    for (const Block& b : blocks)
-      count += static_cast<std::size_t>(
-          std::count_if(b.texels.begin(), b.texels.end(), [](const Texel& t) { return !t.seen; }));
-  return count;
-}
-
 double Gather::meanCurvature(const Surface& surface, double reach) const {
   const Camera& camera = surfaces_.camera();
   const glm::dvec2 pixel = glm::floor(camera.project(surface.position));

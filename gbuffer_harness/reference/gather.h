@@ -35,9 +35,6 @@ public:
   // threads.
   Gathered at(const Surface& surface, std::size_t material) const;
 
-  // Lit texels that the camera does not see, over all lights.
-  std::size_t hiddenTexels() const;
-
 private:
   struct Texel {
     glm::dvec3 position, normal;  // mm; unit, towards the light's side. World

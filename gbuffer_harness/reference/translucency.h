@@ -64,7 +64,6 @@ private:
   LightPath thinWallPath(std::size_t light, const Receiver& r) const;
   // Part of the light that no surface but the sheet itself holds back.
   double unblockedPart(std::size_t light, const Receiver& r, double facing) const;
-  bool isGathered(std::size_t light) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.
