@@ -263,8 +263,8 @@ ExrFormat formatOf(const ExrFile& file, int part, const std::string& channel) {
 
 }  // namespace
 
-Capture readCapture(const std::filesystem::path& path, ManifestPreset preset) {
-  return readCapture(withinMemory(path.string(), [&] { return readManifest(path, preset); }));
+Capture readCapture(const std::filesystem::path& path) {
+  return readCapture(withinMemory(path.string(), [&] { return readManifest(path); }));
 }
 
 Capture readCapture(const Manifest& manifest) {

@@ -17,7 +17,7 @@ namespace pellucid::harness {
 // Pixels that a data window leaves out hold nothing: 0, material 0, kNoDepth for viewZ and distance; a device
 // depth must cover its display window, because no device value means "nothing". Depths are otherwise kept as
 // stored. Throws InputError naming file, field and value.
-Capture readCapture(const std::filesystem::path& path, ManifestPreset preset = ManifestPreset::None);
+Capture readCapture(const std::filesystem::path& path);
 
 // The same for a manifest already read.
 Capture readCapture(const Manifest& manifest);

@@ -59,7 +59,6 @@ const std::vector<LimitKind> kLimitKinds = {
 struct Options {
   std::string a, b, mask, diff, ratio, isolated, layer, subset = "all";
   double scale = 1;
-  ManifestPreset preset = ManifestPreset::None;
   int box = 1;
   double boxCoverage = 0.5, exposure = 0;
   std::vector<std::string> limits;
@@ -222,7 +221,7 @@ void compare(const Options& options) {
   for (Image* image : {&truthB.image, &truthB.standardError})
     for (float& value : image->data) value *= static_cast<float>(options.scale);
   const Image &a = truthA.image, &b = truthB.image;
-  if (!options.mask.empty()) capture = readCapture(options.mask, options.preset);
+  if (!options.mask.empty()) capture = readCapture(options.mask);
   const Subset subset = options.subset == "lit"     ? Subset::Lit
                         : options.subset == "unlit" ? Subset::Unlit
                                                     : Subset::All;
@@ -271,7 +270,6 @@ void addCompareCommand(const Command& app) {
   command.option("B", options->b, "EXR image, or a capture: its truth, over its material pixels").required();
   command.option("--mask", options->mask,
                  "capture whose material pixels count (default: B's, else all pixels)");
-  addPresetOption(command, options->preset);
   command.option("--layer", options->layer,
                  "layer of B whose R, G, B are compared; B then counts as an image");
   command.option("--scale", options->scale, "factor of B, as pi for a pass that holds E / pi").positive();

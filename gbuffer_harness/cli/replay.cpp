@@ -70,7 +70,6 @@ struct Options {
   ToneMap toneMap = ToneMap::None;
   int jobs = 2;
   std::optional<uint32_t> repeat, views;
-  ManifestPreset preset = ManifestPreset::None;
   SettingsOptions settings;
 };
 
@@ -157,13 +156,13 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
   const char* const names[] = {"R", "G", "B"};
   for (int c = 0; c < 3; ++c) part.channels.push_back({names[c], ExrFormat::Float, &image, c});
   KeptLayers kept;
-  if (options.keepLayers) kept = readOtherLayers(readManifest(capture.name, options.preset).irradiance);
+  if (options.keepLayers) kept = readOtherLayers(readManifest(capture.name).irradiance);
   part.channels.insert(part.channels.end(), kept.channels.begin(), kept.channels.end());
   writeWhole(output, [&](const auto& file) { writeExrParts(file, {part}); });
 }
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
-  const Capture capture = readCapture(options.input, options.preset);
+  const Capture capture = readCapture(options.input);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   warn(coarseTables(capture));
   warn(thinBodies(capture, materials));
@@ -243,7 +242,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
         const std::scoped_lock lock(reportMutex);
         missing.push_back(frame);
       } else {
-        const Capture capture = readCapture(input(frame), options.preset);
+        const Capture capture = readCapture(input(frame));
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
         requireNearestDistance(capture, materials, settings);
         std::unique_lock lock(deviceMutex);
@@ -339,7 +338,6 @@ void addReplayCommand(const Command& app) {
   command.option("--exposure", options->exposure, "factor for PNGs; default: from the picture").positive();
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   addToneMapOption(command, options->toneMap);
-  addPresetOption(command, options->preset);
   options->settings.blocks = true;
   options->settings.addTo(command);
   command.run([options] { replay(*options); });

@@ -118,12 +118,6 @@ std::string SettingsOptions::text() const {
   return all;
 }
 
-void addPresetOption(const Command& command, ManifestPreset& preset) {
-  command.choice(
-      "--preset", preset, {{"blender", ManifestPreset::Blender}},
-      "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)");
-}
-
 std::string extensionOf(const std::filesystem::path& path) { return lower(path.extension().string()); }
 
 void requireExr(const std::string& option, const std::filesystem::path& path) {

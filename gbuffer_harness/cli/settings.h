@@ -37,9 +37,6 @@ private:
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 
-// --preset of the commands that read captures.
-void addPresetOption(const Command& command, ManifestPreset& preset);
-
 // --tonemap of the commands that write pictures. `map`: a ToneMap, or an optional one, which stays empty
 // without the option.
 template <class Map>
