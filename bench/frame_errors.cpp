@@ -174,7 +174,8 @@ nlohmann::json errorFields(Image result, const Capture& capture) {
       result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
   ChannelErrors errors{};
   for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
-  const EyeMetrics eye = measureEye(result, capture);
+  const EyeMetrics eye = measureEye(
+      result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), &capture);
   return {{"truth_relative_rmse", rootMeanSquare(errors)},
           {"truth_relative_rmse_rgb", errors},
           {"isolated", eye.isolated},

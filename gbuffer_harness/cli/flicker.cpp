@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 
@@ -14,7 +15,6 @@
 #include "cli/command.h"
 #include "cli/commands.h"
 #include "cli/limits.h"
-#include "cli/metrics_json.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
 #include "common/compare.h"
@@ -246,6 +246,19 @@ void measurePaths(const Options& options, const Frames& frames, const ReplaySett
     rows.push_back(rowOf("path " + name + ", irradiance", std::move(irradiances)));
     if (!options.picture.empty()) picture.write(options.picture);
   }
+}
+
+Json toJson(const Flicker& flicker) {
+  return {{"rel_rmse", flicker.relativeRmse},
+          {"p999", flicker.p999},
+          {"worst", flicker.worst},
+          {"worstPixel", flicker.worstPixel},
+          {"pixels", flicker.pixels}};
+}
+
+Json toJson(const SpotFlicker& spots) {
+  return {
+      {"still", spots.still}, {"turned", spots.turned}, {"appear", spots.appear}, {"vanish", spots.vanish}};
 }
 
 std::string toMarkdown(const std::vector<Row>& rows) {
