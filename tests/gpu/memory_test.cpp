@@ -165,7 +165,7 @@ TEST_F(Memory, DevicesAreNotReplaced) {
       "replay " + capture + " --repeat 0 -o @.exr",
       "sheet " + image + " -o @.png",
       "compare " + image + " " + image + " --ratio @.png",
-      "measure-dots --procedural sphere --entries 2 --steps 1 --size 16 --shadow-size 16 -o @.json"};
+      "measure-dots --procedural sphere --entries 2 --steps 1 --size 16x16 --shadow-size 16 -o @.json"};
   for (const std::string& arguments : commands) {
     const std::string name = "full" + arguments.substr(arguments.find('@') + 1);
     std::filesystem::create_symlink("/dev/full", path(name));
