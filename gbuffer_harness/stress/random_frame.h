@@ -65,7 +65,6 @@ private:
 };
 
 struct FrameLimits {
-  std::optional<std::uint32_t> gatherSamples;  // of all frames; none: any
   int pixels = 65536;                          // of the largest frame; few frames are above 64 x 64
   int side = 16384;  // of the longest frame: what images of any Vulkan device may have is less or more
 };
