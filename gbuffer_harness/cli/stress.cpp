@@ -12,7 +12,6 @@
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "common/error.h"
-#include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "stress/results.h"
@@ -32,7 +31,6 @@ constexpr int kShown = 3;
 struct Options {
   StressOptions stress;
   std::string device, folder, results, compareWith;
-  bool guarded = false;
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -45,7 +43,6 @@ std::string againText(const Options& options, std::uint64_t frame) {
   if (given.limits.pixels != defaults.limits.pixels)
     text += " --pixels " + std::to_string(given.limits.pixels);
   if (given.validate) text += " --validate";
-  if (options.guarded) text += " --guarded";
   return text;
 }
 
@@ -111,13 +108,9 @@ void run(Options& options) {
   std::optional<stress::ResultsReader> reader;
   if (!options.results.empty()) writer.emplace(options.results);
   if (!options.compareWith.empty()) reader.emplace(options.compareWith);
-  DeviceOptions wanted{options.device, s.validate};
-  wanted.guarded = options.guarded;
-  stress::Renderer renderer(wanted);
+  stress::Renderer renderer({options.device, s.validate});
   Reporter reporter(options);
   stress::StressEvents events;
-  if (options.guarded)
-    events.started = [&](std::uint64_t frame) { reportGuardFaults(againText(options, frame).c_str()); };
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);
   };
@@ -179,10 +172,6 @@ void addStressCommand(const Command& app) {
   command.option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
   command.flag("--validate", s.validate,
                "with Vulkan's core and synchronization validation, whose messages are violations");
-  command.flag(
-      "--guarded", options->guarded,
-      "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
-      "like indices: an access beyond the constants ends the command");
   command.option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command.option("--results", options->results, "file for the outputs, to compare another device's with");
   command.option("--compare-with", options->compareWith,
