@@ -14,7 +14,6 @@
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "stress/results.h"
 #include "stress/stress.h"
 
 namespace pellucid::harness {
@@ -30,7 +29,7 @@ constexpr int kShown = 3;
 
 struct Options {
   StressOptions stress;
-  std::string device, folder, results, compareWith;
+  std::string device, folder;
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -82,12 +81,6 @@ void printRow(const std::string& name, const Cell&... cells) {
   std::cout << '\n';
 }
 
-void print(const stress::ResultsReader& other) {
-  printRow("difference", "frames", "same bits", "values", "above 1e-3", "above 1e-2", "worst", "frame");
-  for (const auto& [name, d] : {std::pair{"tame", &other.tame}, std::pair{"wild", &other.wild}})
-    printRow(name, d->frames, d->sameBits, d->values, d->above3, d->above2, d->worst.value, d->worstFrame);
-}
-
 void print(const StressOptions& options, const StressResult& result) {
   std::cout << result.device << "\nseed " << options.seed << ", frames " << options.first << " to "
             << options.first + result.frames - 1 << ", " << result.recordings << " recordings, "
@@ -104,19 +97,11 @@ void run(Options& options) {
   StressOptions& s = options.stress;
   // Errors of these options come before a device is opened.
   if (!s.only.empty()) stress::requireCheck(s.only);
-  std::optional<stress::ResultsWriter> writer;
-  std::optional<stress::ResultsReader> reader;
-  if (!options.results.empty()) writer.emplace(options.results);
-  if (!options.compareWith.empty()) reader.emplace(options.compareWith);
   stress::Renderer renderer({options.device, s.validate});
   Reporter reporter(options);
   stress::StressEvents events;
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);
-  };
-  events.rendered = [&](const StressFrame& frame, const Image& output) {
-    if (writer) writer->add(frame, output);
-    if (reader && !reader->ended()) reader->add(frame, output);
   };
   StressResult result;
   {
@@ -134,7 +119,6 @@ void run(Options& options) {
     result = stress::runStress(renderer, s, events);
   }
   print(s, result);
-  if (reader) print(*reader);
   if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
 }
 
@@ -173,9 +157,6 @@ void addStressCommand(const Command& app) {
   command.flag("--validate", s.validate,
                "with Vulkan's core and synchronization validation, whose messages are violations");
   command.option("-o,--output", options->folder, "folder for captures of frames that violate a check");
-  command.option("--results", options->results, "file for the outputs, to compare another device's with");
-  command.option("--compare-with", options->compareWith,
-                 "file of --results of the same seed, first frame and limits");
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   command.run([options] { run(*options); });
 }
