@@ -181,7 +181,7 @@ void multiply(Image& image, const Image& times) {
   for (std::size_t i = 0; i < times.data.size(); ++i) image.data[i] *= times.data[i];
 }
 
-// Of a black surface no light is known. Without a material none is needed.
+// The light on a black surface is not known. A pixel without a material needs none.
 void divideByAlbedo(const Manifest& manifest, Capture& capture) {
   for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i) {
     float& light = capture.irradiance.data[i];

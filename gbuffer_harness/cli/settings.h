@@ -32,8 +32,8 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
-// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its
-// option is `debugOption`, or "".
+// The JSON object from which --set @FILE reads these settings in --mode physical. The debug view has no key;
+// debugOption() gives the value of its option, or "".
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 

@@ -90,7 +90,7 @@ public:
     transfers_.downloaded += downloaded;
   }
 
-  // What the validation layers have said so far; warnings and errors.
+  // The warnings and errors of the validation layers so far.
   std::vector<std::string> validationMessages() const;
 
 private:

@@ -1,5 +1,5 @@
-// What the eye sees of a result: FLIP, isolated pixels, spots, and where it is brighter, darker or of another
-// color than the truth.
+// Faults of a result that the eye sees: FLIP, isolated pixels, spots, and places that are brighter, darker or
+// of another color than in the truth.
 #pragma once
 
 #include <array>

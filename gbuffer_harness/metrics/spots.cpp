@@ -21,7 +21,7 @@ constexpr std::array<std::array<int, 2>, 8> kSteps = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
 constexpr std::size_t kStraightSteps = 4;  // the first of them
 
-// Of normal noise: the median of |value - mean of four neighbors| over the standard deviation of the value.
+// The median of |value - mean of four neighbors| over the standard deviation of the value, for normal noise.
 const double kGrainOfNoise = 0.6745 * std::sqrt(1 + 1.0 / 4);
 
 // Pixels of the 9x9 around (x, y) that steps reach, (x, y) first.
@@ -83,7 +83,7 @@ SpotImage::SpotImage(const Image& image, const Surfaces& surfaces, const Mask& m
         pixels_[index(x, y)].value[c] =
             std::max(image.at(x, y)[c], static_cast<float>(kDarkestPart * rms[c]));
     }
-  // What a pixel differs by from its neighbors, which no slope changes.
+  // The difference of a pixel from its neighbors, which no slope changes.
   std::vector<Color> grain(image.pixels());
   parallelRows(height_, 0, [&](int y) {
     for (int x = 0; x < width_; ++x) {

@@ -17,7 +17,7 @@ namespace pellucid::harness::reference {
 // settings.minimumDot for models without a table. Throws InputError when the table does not fit the model.
 double minimumDot(const TranslucencySettings& settings, const Light& light);
 
-// What one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
+// Light that one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
 struct Transmission {
   std::optional<double> cameraThickness;  // ray chord between front and back depth
   std::optional<double> lightThickness;   // first light with a map that contains the pixel

@@ -13,8 +13,8 @@
 
 namespace pellucid::harness::stress {
 
-// SplitMix64 (Steele, Lea and Flood 2014): numbers that are the same on every machine, which those of the
-// standard library's distributions are not.
+// SplitMix64 (Steele, Lea and Flood 2014). Its numbers are the same on every machine; the distributions of
+// the standard library differ.
 class Random {
 public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
