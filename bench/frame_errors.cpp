@@ -88,9 +88,7 @@ std::vector<std::array<double, 3>> bruteForce(const Capture& c,
       const float e = c.irradiance.data[3 * i + static_cast<size_t>(k)];
       irradiance[i][k] = e > 0 ? std::min(static_cast<double>(e), 65504.0) : 0;  // as the reference has it
     }
-  reference::DiffusionSettings settings;
-  settings.discardedEnergy = kDiscarded;
-  const reference::Diffusion diffusion(c, surfaces, materials, settings, irradiance);
+  const reference::Diffusion diffusion(c, surfaces, materials, irradiance, kDiscarded);
   std::vector<std::array<double, 3>> values(pixels.size());
   parallelRows(static_cast<int>(pixels.size()), 0, [&](int i) {
     const auto pixel = static_cast<int>(pixels[static_cast<size_t>(i)]);
@@ -176,7 +174,8 @@ nlohmann::json errorFields(Image result, const Capture& capture) {
       result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
   ChannelErrors errors{};
   for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
-  const EyeMetrics eye = measureEye(result, capture);
+  const EyeMetrics eye = measureEye(
+      result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), &capture);
   return {{"truth_relative_rmse", rootMeanSquare(errors)},
           {"truth_relative_rmse_rgb", errors},
           {"isolated", eye.isolated},

@@ -69,25 +69,17 @@ public:
     all.push_back({"irradiance", [](const Capture& capture) { return capture.irradiance; }});
     std::vector<std::vector<Flicker>> steps(all.size());
     std::vector<double> frames;
-    std::vector<Image> before;
-    std::optional<Capture> last;
+    PathFlicker flicker;
     for (int frame = 0; frame < kPathFrames; ++frame) {
       const CameraPath::Pose pose = path.at(frame);
-      Capture capture = draw(pose.camera, pose.lights);
-      std::optional<Reprojection> reprojection;
-      if (last) {
-        reprojection.emplace(*last, capture);
-        capture.motion = reprojection->motion();
-      }
-      std::vector<Image> images;
-      for (const Method& method : all) images.push_back(method.run(capture));
-      if (reprojection && !pose.switches) {
-        frames.push_back(frame);
-        for (std::size_t i = 0; i < all.size(); ++i)
-          steps[i].push_back(reprojection->compare(before[i], images[i]));
-      }
-      before = std::move(images);
-      last = std::move(capture);
+      const std::vector<Flicker> step =
+          flicker.next(draw(pose.camera, pose.lights), pose.switches, [&](const Capture& capture) {
+            std::vector<Image> images;
+            for (const Method& method : all) images.push_back(method.run(capture));
+            return images;
+          });
+      if (!step.empty()) frames.push_back(frame);
+      for (std::size_t i = 0; i < step.size(); ++i) steps[i].push_back(step[i]);
     }
     std::vector<Plot> plots(2);
     plots[0].title = name + ": change, relative RMSE in red";

@@ -31,7 +31,7 @@ struct ShadowMap {
   DepthImage depth;
   Matrix clipFromWorld = kIdentity;
   std::optional<Matrix> viewFromWorld;  // required for VIEW_Z and DISTANCE
-  // Of depth's size, or empty: not given. What the fields of PellucidShadowMap are.
+  // The images of PellucidShadowMap of these names, in the size of `depth`; empty: not given.
   Image exitDepth;                           // one channel, in depth's encoding
   std::vector<std::uint8_t> casterMaterial;  // index; 0: opaque, or nothing there
   bool backFaces = false;

@@ -10,7 +10,6 @@
 #include <sstream>
 #include <tuple>
 
-#include "capture/blender.h"
 #include "capture/capture.h"
 #include "capture/exr.h"
 #include "capture/json_field.h"
@@ -511,19 +510,11 @@ std::string readText(const std::filesystem::path& path) {
 
 }  // namespace
 
-Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset) {
+Manifest readManifest(const std::filesystem::path& path) {
   Manifest manifest;
   manifest.path = path;
   manifest.capture.name = path.string();
   BufferReader read{path.parent_path(), {}};
-  if (preset == ManifestPreset::Blender) {
-    const std::filesystem::path scene = std::filesystem::path(path).replace_extension(".json");
-    if (!std::filesystem::is_regular_file(scene))
-      throw InputError(scene.string(), "", "no such file; tools/blender_export.py writes it");
-    const nlohmann::json document = blenderManifest(path, scene, readText(scene));
-    parse(Field(scene.string(), document), read, manifest);
-    return manifest;
-  }
   std::string text;
   if (isExr(path)) {
     const auto embedded = ExrFile(path).findText(kManifestAttribute);

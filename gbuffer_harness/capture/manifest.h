@@ -57,15 +57,9 @@ struct Manifest {
   bool irradianceIncludesAlbedo = false;  // by which reading divides it
 };
 
-// Who made a file that is no capture of its own.
-enum class ManifestPreset {
-  None,
-  Blender  // multilayer EXR of Cycles; the JSON of tools/blender_export.py has its name, with .json
-};
-
 // Reads `path`: a JSON manifest, or an EXR with one in the string attribute `pellucid.manifest`; the
-// file's first bytes tell which. With a preset it is the EXR. Throws InputError naming file, field and value.
+// file's first bytes tell which. Throws InputError naming file, field and value.
 // No pixel is read.
-Manifest readManifest(const std::filesystem::path& path, ManifestPreset preset = ManifestPreset::None);
+Manifest readManifest(const std::filesystem::path& path);
 
 }  // namespace pellucid::harness

@@ -181,7 +181,7 @@ void multiply(Image& image, const Image& times) {
   for (std::size_t i = 0; i < times.data.size(); ++i) image.data[i] *= times.data[i];
 }
 
-// Of a black surface no light is known. Without a material none is needed.
+// The light on a black surface is not known. A pixel without a material needs none.
 void divideByAlbedo(const Manifest& manifest, Capture& capture) {
   for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i) {
     float& light = capture.irradiance.data[i];
@@ -256,51 +256,14 @@ Capture readImages(const Manifest& manifest) {
   return capture;
 }
 
-ExrFormat formatOf(const ExrFile& file, int part, const std::string& channel) {
-  const std::string name = file.channelFormat(part, channel);
-  return name == "half" ? ExrFormat::Half : name == "uint" ? ExrFormat::Uint : ExrFormat::Float;
-}
-
 }  // namespace
 
-Capture readCapture(const std::filesystem::path& path, ManifestPreset preset) {
-  return readCapture(withinMemory(path.string(), [&] { return readManifest(path, preset); }));
+Capture readCapture(const std::filesystem::path& path) {
+  return readCapture(withinMemory(path.string(), [&] { return readManifest(path); }));
 }
 
 Capture readCapture(const Manifest& manifest) {
   return withinMemory(manifest.path.string(), [&] { return readImages(manifest); });
-}
-
-KeptLayers readOtherLayers(const BufferSource& irradiance) {
-  KeptLayers kept;
-  if (irradiance.isConstant()) return kept;
-  const ExrFile file(irradiance.file, irradiance.field);
-  const int own = file.findPart(irradiance.channels, irradiance.part, irradiance.field);
-  std::set<std::string> taken = {"R", "G", "B"};
-  const auto keep = [&](int part, const std::vector<std::pair<std::string, std::string>>& channels) {
-    std::vector<ExrPlane> planes;
-    for (const auto& [from, name] : channels) {
-      if (!taken.insert(name).second) continue;
-      Image& image = kept.images.emplace_back();
-      image.channels = 1;
-      planes.push_back({from, &image, 0, 0});
-      kept.channels.push_back({name, formatOf(file, part, from), &image, 0});
-    }
-    if (!planes.empty()) file.read(part, ExrWindow::Display, planes);
-  };
-  const std::string& red = irradiance.channels.front();
-  const std::string alpha = red.substr(0, red.rfind('.') + 1) + "A";  // npos + 1 is 0
-  const std::vector<std::string> names = file.channels(own);
-  if (std::find(names.begin(), names.end(), alpha) != names.end()) keep(own, {{alpha, "A"}});
-  for (int part = 0; part < file.partCount(); ++part) {
-    if (file.width(part, ExrWindow::Data) != file.width(own, ExrWindow::Data) ||
-        file.height(part, ExrWindow::Data) != file.height(own, ExrWindow::Data))
-      continue;  // a shadow map
-    std::vector<std::pair<std::string, std::string>> channels;
-    for (const std::string& name : file.channels(part)) channels.emplace_back(name, name);
-    keep(part, channels);
-  }
-  return kept;
 }
 
 }  // namespace pellucid::harness

@@ -1,12 +1,10 @@
 // Captures from disk.
 #pragma once
 
-#include <deque>
 #include <filesystem>
 #include <vector>
 
 #include "capture/capture.h"
-#include "capture/exr.h"
 #include "capture/manifest.h"
 
 namespace pellucid::harness {
@@ -17,20 +15,9 @@ namespace pellucid::harness {
 // Pixels that a data window leaves out hold nothing: 0, material 0, kNoDepth for viewZ and distance; a device
 // depth must cover its display window, because no device value means "nothing". Depths are otherwise kept as
 // stored. Throws InputError naming file, field and value.
-Capture readCapture(const std::filesystem::path& path, ManifestPreset preset = ManifestPreset::None);
+Capture readCapture(const std::filesystem::path& path);
 
 // The same for a manifest already read.
 Capture readCapture(const Manifest& manifest);
-
-// Channels of a capture's file that a result keeps.
-struct KeptLayers {
-  std::deque<Image> images;  // its elements stay where they are
-  std::vector<ExrChannel> channels;
-};
-
-// Every channel of the file that holds the irradiance, in parts of that one's size, but for R, G and B, and
-// the alpha of the irradiance's layer as A. Nothing for a constant. Numbers above 2^24 of uint channels are
-// rounded. Throws InputError.
-KeptLayers readOtherLayers(const BufferSource& irradiance);
 
 }  // namespace pellucid::harness

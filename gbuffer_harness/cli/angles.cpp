@@ -82,27 +82,14 @@ void plot(const std::string& output) {
   std::cout << "wrote " << output << '\n';
 }
 
-void print() {
-  std::printf("%-8s", "degrees");
-  for (const std::vector<Curve>& figure : curves())
-    for (const Curve& curve : figure) std::printf("  %26s", curve.name);
-  for (int degrees = 90; degrees <= 180; degrees += 10) {
-    std::printf("\n%-8d", degrees);
-    for (const std::vector<Curve>& figure : curves())
-      for (const Curve& curve : figure)
-        std::printf("  %26.4f", curve.value(degrees * std::numbers::pi / 180));
-  }
-  std::printf("\n");
-}
-
 }  // namespace
 
 void addAnglesCommand(const Command& app) {
   const auto output = std::make_shared<std::string>();
   const Command command = app.subcommand(
-      "angles", "Print the curves of the angle between view and light in Whelan 2009, figures 4.7 and 4.8");
-  command.option("-o,--output", *output, "PNG of both figures, in place of the table");
-  command.run([output] { output->empty() ? print() : plot(*output); });
+      "angles", "Plot the curves of the angle between view and light in Whelan 2009, figures 4.7 and 4.8");
+  command.option("-o,--output", *output, "PNG of both figures").required();
+  command.run([output] { plot(*output); });
 }
 
 }  // namespace pellucid::harness

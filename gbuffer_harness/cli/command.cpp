@@ -57,10 +57,6 @@ const CommandOption& CommandOption::separatedBy(char separator) const {
   option_->delimiter(separator);
   return *this;
 }
-const CommandOption& CommandOption::count(int values) const {
-  option_->expected(values);
-  return *this;
-}
 const CommandOption& CommandOption::excludes(const CommandOption& other) const {
   option_->excludes(other.option_);
   return *this;

@@ -38,7 +38,6 @@ public:
   const CommandOption& oneOf(std::initializer_list<const char*> values) const;
   const CommandOption& oneOf(std::initializer_list<int> values) const;
   const CommandOption& separatedBy(char separator) const;  // of a list
-  const CommandOption& count(int values) const;            // of a list: exactly so many
   const CommandOption& excludes(const CommandOption& other) const;
   const CommandOption& needs(const CommandOption& other) const;
 

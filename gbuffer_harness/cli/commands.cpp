@@ -8,7 +8,6 @@ void addCommands(const Command& app) {
   addReplayCommand(app);
   addPlanCommand(app);
   addMaterialCommand(app);
-  addReferenceCommand(app);
   addTruthCommand(app);
   addCompareCommand(app);
   addEvaluateCommand(app);

@@ -14,7 +14,6 @@ void addInitCommand(const Command& app);
 void addReplayCommand(const Command& app);
 void addPlanCommand(const Command& app);
 void addMaterialCommand(const Command& app);
-void addReferenceCommand(const Command& app);
 void addCompareCommand(const Command& app);
 void addTruthCommand(const Command& app);
 void addEvaluateCommand(const Command& app);

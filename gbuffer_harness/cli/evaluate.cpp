@@ -1,9 +1,8 @@
 // `pellucid evaluate`: models, or numbers of samples, against the path-traced truth of captures.
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
+#include <filesystem>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,39 +10,28 @@
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/commands.h"
-#include "cli/metrics_json.h"
 #include "common/compare.h"
 #include "common/error.h"
-#include "common/plot.h"
 #include "common/png.h"
 #include "metrics/eye.h"
-#include "reference/reference.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
 namespace {
 
-struct EvaluationBoxes {
-  int side = 4;           // pixels: averages that are compared
-  double coverage = 0.5;  // part of an average's pixels that must be surface
-};
+constexpr int kBox = 4;  // pixels a side of the averages that are compared
 
 // One model's result.
 struct Evaluation {
   std::string capture, model;
   std::optional<Comparison> all, unlit;  // absent: no such pixels; unlit: without front irradiance
   EyeMetrics eye;
-  // relativeNoise() of the truth over averages as above, wholly of surface, and over 8x8; empty: not known.
-  std::vector<double> noise, noiseOf8;
 };
 
-using Json = nlohmann::ordered_json;
-
-std::optional<Comparison> compared(const Capture& capture, const Image& result, Subset subset,
-                                   const EvaluationBoxes& boxes) {
+std::optional<Comparison> compared(const Capture& capture, const Image& result, Subset subset) {
   const Mask mask = comparisonMask(capture.material, capture.irradiance, subset);
   if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return std::nullopt;
-  return compareImages(result, capture.truth->image, mask, boxes.side, boxes.coverage);
+  return compareImages(result, capture.truth->image, mask, kBox);
 }
 
 std::string errorCells(const std::optional<Comparison>& comparison) {
@@ -55,121 +43,31 @@ std::string errorCells(const std::optional<Comparison>& comparison) {
   return text;
 }
 
-std::string eyeCells(const EyeMetrics& eye) {
-  char text[256];
-  const auto& tint = eye.tint.channel;
-  const std::string tints = eye.tint.blocks > 0
-                                ? (std::snprintf(text, sizeof text, "%.3f %.3f %.3f | %.3f", tint[0], tint[1],
-                                                 tint[2], eye.tint.redOverGreen),
-                                   text)
-                                : "no such blocks | ";
-  std::snprintf(text, sizeof text, "%zu (%zu) | %zu | %s | %.3f | %.3f | %.3g", eye.isolated,
-                eye.isolatedInTruth, eye.spots, tints.c_str(), eye.flip.mean, eye.flip.p99,
-                eye.flip.exposure);
-  return text;
-}
-
-Json toJson(const std::optional<Comparison>& comparison) {
-  if (!comparison) return nullptr;
-  Json json;
-  for (const ChannelDifference& channel : comparison->channels) {
-    json["rel_rmse"].push_back(channel.relativeRmse);
-    json["bias"].push_back(channel.bias);
-  }
-  json["blocks"] = comparison->samples;
-  json["nonFinite"] = comparison->nonFiniteA;
-  return json;
-}
-
-// exposure: of FLIP, as measureFlip(). Throws InputError when sizes differ.
-Evaluation evaluate(const std::string& captureName, const std::string& model, const Capture& capture,
-                    const Image& result, const EvaluationBoxes& boxes, double exposure) {
-  Evaluation e{captureName,
-               model,
-               compared(capture, result, Subset::All, boxes),
-               compared(capture, result, Subset::Unlit, boxes),
-               measureEye(result, capture, exposure),
-               {},
-               {}};
-  if (const Truth& truth = *capture.truth; !truth.standardError.empty()) {
-    e.noise = relativeNoise(truth.image, truth.standardError, capture.material, boxes.side);
-    e.noiseOf8 = relativeNoise(truth.image, truth.standardError, capture.material, 8);
-  }
-  return e;
-}
-
-std::string noiseCells(const std::vector<double>& noise) {
-  if (noise.empty()) return "no such block";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4f %.4f %.4f", noise[0], noise[1], noise[2]);
-  return text;
-}
-
-// One row a capture whose truth says its noise.
-std::string noiseTable(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
-  std::ostringstream rows;
-  const std::string* last = nullptr;
-  for (const Evaluation& e : evaluations) {
-    if ((e.noise.empty() && e.noiseOf8.empty()) || (last && *last == e.capture)) continue;
-    last = &e.capture;
-    rows << "| " << e.capture << " | " << noiseCells(e.noise) << " | " << noiseCells(e.noiseOf8) << " |\n";
-  }
-  if (rows.str().empty()) return "";
-  std::ostringstream text;
-  text
-      << "\nNoise of the truths: standard error over RMS (R G B), averages wholly of surface.\n\n| capture | "
-      << boxes.side << "x" << boxes.side << " | 8x8 |\n|-|-|-|\n"
-      << rows.str();
-  return text.str();
-}
-
-// Tables of error and bias, of what the eye sees, and of the truths' noise where it is known.
-std::string evaluationMarkdown(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
-  std::ostringstream text;
-  text << "Relative RMSE and mean bias (R G B) against path-traced truth, " << boxes.side << "x" << boxes.side
-       << " averages of which " << 100 * boxes.coverage
-       << " % and more are surface; unlit: pixels without front irradiance.\n\n"
-       << "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n";
+void print(const std::vector<Evaluation>& evaluations) {
+  std::printf(
+      "Relative RMSE and mean bias (R G B) against the truth, %dx%d averages of which half and more are surface; "
+      "unlit: pixels without front irradiance.\n\n"
+      "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n",
+      kBox, kBox);
   for (const Evaluation& e : evaluations)
-    text << "| " << e.capture << " | " << e.model << " | " << errorCells(e.all) << " | "
-         << errorCells(e.unlit) << " |\n";
-  text << "\nWhat the eye sees against path-traced truth: isolated pixels (those of the truth in "
-          "parentheses), spots that the truth lacks, "
-          "tint of 8x8 averages (R G B, then red over green), FLIP.\n\n"
-       << "| capture | model | isolated | spots | tint | red/green | FLIP mean | 99th percentile | at "
-          "exposure |\n"
-       << "|-|-|-|-|-|-|-|-|-|\n";
-  for (const Evaluation& e : evaluations)
-    text << "| " << e.capture << " | " << e.model << " | " << eyeCells(e.eye) << " |\n";
-  text << noiseTable(evaluations, boxes);
-  return text.str();
-}
-
-// An object with `boxes` and an array of all numbers, one object a result.
-std::string evaluationJson(const std::vector<Evaluation>& evaluations, const EvaluationBoxes& boxes) {
-  Json results = Json::array();
-  for (const Evaluation& e : evaluations)
-    results.push_back({{"capture", e.capture},
-                       {"model", e.model},
-                       {"all", toJson(e.all)},
-                       {"unlit", toJson(e.unlit)},
-                       {"isolated", e.eye.isolated},
-                       {"isolatedInTruth", e.eye.isolatedInTruth},
-                       {"spots", e.eye.spots},
-                       {"tint", toJson(e.eye.tint)},
-                       {"flip", toJson(e.eye.flip)},
-                       {"truthNoise", e.noise},
-                       {"truthNoise8x8", e.noiseOf8}});
-  return Json{{"box", boxes.side}, {"boxCoverage", boxes.coverage}, {"results", std::move(results)}}.dump(2) +
-         "\n";
+    std::printf("| %s | %s | %s | %s |\n", e.capture.c_str(), e.model.c_str(), errorCells(e.all).c_str(),
+                errorCells(e.unlit).c_str());
+  std::printf(
+      "\nWhat the eye sees against the truth: isolated pixels (those of the truth in parentheses), spots that the truth "
+      "lacks, tint of 8x8 averages (R G B, then red over green), FLIP.\n\n"
+      "| capture | model | isolated | spots | tint | red/green | FLIP mean | 99th percentile |\n"
+      "|-|-|-|-|-|-|-|-|\n");
+  for (const auto& [capture, model, all, unlit, eye] : evaluations) {
+    const auto& tint = eye.tint.channel;
+    std::printf("| %s | %s | %zu (%zu) | %zu | %.3f %.3f %.3f | %.3f | %.3f | %.3f |\n", capture.c_str(),
+                model.c_str(), eye.isolated, eye.isolatedInTruth, eye.spots, tint[0], tint[1], tint[2],
+                eye.tint.redOverGreen, eye.flip.mean, eye.flip.p99);
+  }
 }
 
 struct Options {
   std::vector<std::string> captures;
-  std::string output, device, picture, plot, rows = "models";
-  EvaluationBoxes boxes;
-  double exposure = 0;
-  bool reference = false, json = false;
+  std::string device, picture, rows = "models";
 };
 
 struct Model {
@@ -206,14 +104,6 @@ Image replayed(Replayer& replayer, const Capture& capture, const std::vector<Pel
   return rgb(replayer.run(capture, materials, settings).output);
 }
 
-// What the samples converge to, over brute-force diffusion.
-Image allTexels(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
-  reference::Settings settings;
-  settings.translucency.gatherSamples = 64;
-  settings.diffusion.discardedEnergy = 1e-3;
-  return reference::compute(capture, materials, settings).image;
-}
-
 // thesis | light-space thickness | the default | truth, under one exposure.
 void writePicture(const std::string& path, const Capture& capture,
                   const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
@@ -231,66 +121,28 @@ void writePicture(const std::string& path, const Capture& capture,
   writePng(path, picture.width, picture.height, toSrgb(picture, autoExposure(images.back())));
 }
 
-// Relative RMSE of the unlit pixels against samples, one line a capture and channel.
-std::vector<Series> samplesAgainstError(const std::string& name, const Capture& capture,
-                                        const std::vector<PellucidMaterial>& materials, Replayer& replayer,
-                                        const Options& options) {
-  const auto mask = comparisonMask(capture.material, capture.irradiance, Subset::Unlit);
-  if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return {};
-  std::vector<Series> lines(3);
-  constexpr Color colors[] = {{200, 40, 40}, {40, 140, 60}, {50, 80, 200}};
-  for (std::size_t c = 0; c < 3; ++c) {
-    lines[c].color = colors[c];
-    lines[c].name = name + std::string(" ") + "RGB"[c];
-  }
-  for (const std::uint32_t samples : {4u, 8u, 16u, 32u, 64u}) {
-    const Image image = replayed(replayer, capture, materials, gather(samples));
-    const Comparison comparison =
-        compareImages(image, capture.truth->image, mask, options.boxes.side, options.boxes.coverage);
-    for (std::size_t c = 0; c < 3; ++c) {
-      lines[c].x.push_back(samples);
-      lines[c].y.push_back(comparison.channels[c].relativeRmse);
-    }
-  }
-  return lines;
-}
-
 void run(const Options& options) {
   Device device({options.device, false});
   Replayer replayer(device);
   std::vector<Evaluation> evaluations;
-  std::vector<Plot> plots;
   for (const std::string& path : options.captures) {
     const Capture capture = readCapture(path);
     if (!capture.truth) throw InputError(path, "truth", "missing: there is nothing to evaluate against");
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+    const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
     const auto file = std::filesystem::absolute(path);
     const std::string name =
         file.extension() == ".json" ? file.parent_path().filename().string() : file.stem().string();
-    const auto add = [&](const std::string& model, const Image& image) {
-      evaluations.push_back(evaluate(name, model, capture, image, options.boxes, options.exposure));
-    };
-    for (const Model& model : options.rows == "models" ? models() : samples())
-      add(model.name, replayed(replayer, capture, materials, model.settings));
-    if (options.reference) add("float64: all texels, exact diffusion", allTexels(capture, materials));
+    for (const Model& model : options.rows == "models" ? models() : samples()) {
+      const Image image = replayed(replayer, capture, materials, model.settings);
+      evaluations.push_back({name, model.name, compared(capture, image, Subset::All),
+                             compared(capture, image, Subset::Unlit),
+                             measureEye(image, capture.truth->image, mask, &capture)});
+    }
     if (!options.picture.empty() && &path == &options.captures.front())
       writePicture(options.picture, capture, materials, replayer);
-    if (!options.plot.empty()) {
-      Plot plot{name + ", unlit pixels", {"samples", true, {}, {}}, {"relative RMSE", false, 0.0, 0.6}, {}};
-      plot.series = samplesAgainstError(name, capture, materials, replayer, options);
-      plots.push_back(std::move(plot));
-    }
   }
-  if (!options.plot.empty()) writePlot(options.plot, plots, 480, 360);
-  const std::string report = options.json ? evaluationJson(evaluations, options.boxes)
-                                          : evaluationMarkdown(evaluations, options.boxes);
-  if (options.output.empty()) {
-    std::fputs(report.c_str(), stdout);
-    return;
-  }
-  std::ofstream file(options.output);
-  file << report;
-  if (!file.flush()) throw InputError(options.output, "", "cannot be written");
+  print(evaluations);
 }
 
 }  // namespace
@@ -300,24 +152,10 @@ void addEvaluateCommand(const Command& app) {
   const Command command =
       app.subcommand("evaluate", "Compare translucency models or numbers of samples with captures' truth");
   command.option("captures", options->captures, "captures with truth").required();
-  command.option("-o,--output", options->output, "file to write the tables to; default: standard output");
   command.option("--rows", options->rows, "models, or samples: 0, 8 and 16 of the gather")
       .oneOf({"models", "samples"});
-  command.flag("--json", options->json, "JSON instead of Markdown tables");
-  command
-      .option("--exposure", options->exposure,
-              "factor for FLIP; default: brings the truth's 99th percentile to 0.8")
-      .positive();
-  command.option("--box", options->boxes.side, "average NxN pixels first").range(1, 64);
-  command
-      .option("--box-coverage", options->boxes.coverage,
-              "part of an average's pixels that must be surface, else it is left out")
-      .range(0.0, 1.0);
-  command.flag("--reference", options->reference,
-               "add the float64 gather over all texels with brute-force diffusion; takes minutes");
   command.option("--picture", options->picture,
                  "PNG of the first capture: thesis, light-space thickness, the default, truth");
-  command.option("--plot", options->plot, "PNG of the error against the samples of the gather");
   command.option("--device", options->device, "part of the Vulkan device's name");
   command.run([options] { run(*options); });
 }

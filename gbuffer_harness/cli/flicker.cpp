@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 
@@ -14,7 +15,6 @@
 #include "cli/command.h"
 #include "cli/commands.h"
 #include "cli/limits.h"
-#include "cli/metrics_json.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
 #include "common/compare.h"
@@ -219,33 +219,42 @@ void measurePaths(const Options& options, const Frames& frames, const ReplaySett
     ReplaySequence sequence(device);
     std::vector<Flicker> results, irradiances;
     PathPicture picture(options.frames);
-    std::optional<Capture> before;
-    Image imageBefore;
+    PathFlicker flicker;
     Progress progress("path " + name, static_cast<std::size_t>(options.frames));
     for (int frame = 0; frame < options.frames; ++frame) {
       const CameraPath::Pose pose = path.at(frame);
       model.lights = pose.lights;
-      Capture capture = captureScene(device, model, pose.camera, frames.scene->raster, sky).capture;
-      std::optional<Reprojection> reprojection;
-      if (before) {
-        reprojection.emplace(*before, capture);
-        capture.motion = reprojection->motion();
+      Image difference;
+      const std::vector<Flicker> step = flicker.next(
+          captureScene(device, model, pose.camera, frames.scene->raster, sky).capture, pose.switches,
+          [&](const Capture& capture) {
+            return std::vector{rgb(sequence.run(capture, materials, settings)), capture.irradiance};
+          },
+          &difference);
+      if (!step.empty()) {
+        results.push_back(step[0]);
+        irradiances.push_back(step[1]);
+        if (!options.picture.empty() && picture.wants(frame)) picture.add(flicker.images()[0], difference);
       }
-      Image image = rgb(sequence.run(capture, materials, settings));
-      if (reprojection && !pose.switches) {
-        Image difference;
-        results.push_back(reprojection->compare(imageBefore, image, &difference));
-        irradiances.push_back(reprojection->compare(before->irradiance, capture.irradiance));
-        if (!options.picture.empty() && picture.wants(frame)) picture.add(image, difference);
-      }
-      before = std::move(capture);
-      imageBefore = std::move(image);
       progress.advance();
     }
     rows.push_back(rowOf("path " + name, std::move(results)));
     rows.push_back(rowOf("path " + name + ", irradiance", std::move(irradiances)));
     if (!options.picture.empty()) picture.write(options.picture);
   }
+}
+
+Json toJson(const Flicker& flicker) {
+  return {{"rel_rmse", flicker.relativeRmse},
+          {"p999", flicker.p999},
+          {"worst", flicker.worst},
+          {"worstPixel", flicker.worstPixel},
+          {"pixels", flicker.pixels}};
+}
+
+Json toJson(const SpotFlicker& spots) {
+  return {
+      {"still", spots.still}, {"turned", spots.turned}, {"appear", spots.appear}, {"vanish", spots.vanish}};
 }
 
 std::string toMarkdown(const std::vector<Row>& rows) {

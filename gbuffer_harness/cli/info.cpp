@@ -254,8 +254,8 @@ void checkConventions(const Capture& capture, const std::vector<PellucidMaterial
       &sentences);
 }
 
-Json describe(const std::filesystem::path& path, ManifestPreset preset) {
-  const Manifest manifest = readManifest(path, preset);
+Json describe(const std::filesystem::path& path) {
+  const Manifest manifest = readManifest(path);
   const Capture capture = readCapture(manifest);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   const Camera camera(capture.clipFromView, capture.width, capture.height);
@@ -361,16 +361,14 @@ void addInfoCommand(const Command& app) {
   struct Options {
     std::string input;
     bool json = false;
-    ManifestPreset preset = ManifestPreset::None;
   };
   const auto options = std::make_shared<Options>();
   const Command command =
       app.subcommand("info", "Say what a capture holds, lacks, and what looks wrong in it");
   command.option("capture", options->input, "manifest (.json) or EXR with an embedded one").required();
-  addPresetOption(command, options->preset);
   command.flag("--json", options->json, "print JSON");
   command.run([options] {
-    const Json json = describe(options->input, options->preset);
+    const Json json = describe(options->input);
     std::cout << (options->json ? json.dump(2) + "\n" : toText(json));
   });
 }

@@ -6,7 +6,7 @@
 
 namespace pellucid::harness {
 
-// What a limit can be set to.
+// A metric that can have a limit.
 struct LimitKind {
   std::string name;
   bool least = false;  // the value must be at least the limit; else its magnitude at most

@@ -1,4 +1,4 @@
-// `pellucid material`: what the material compiler makes of coefficients, a spectrum or a preset.
+// `pellucid material`: the transmittance and the diffusion profile of a material.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -7,9 +7,9 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <sstream>
 
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
@@ -22,18 +22,15 @@ namespace pellucid::harness {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
 constexpr std::array<Color, 3> kChannelColors = {{{200, 40, 40}, {30, 140, 50}, {40, 70, 200}}};
 
+const std::vector<double> kThickness = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};  // of the table, mm
+
 struct Options {
-  std::string name, spectral, plot, illuminant = "D65";
-  std::vector<double> scattering, absorption;
-  std::vector<double> thickness = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};
-  std::optional<double> g, ior, melanin, melaninType, haemoglobin;
-  std::uint32_t gaussians = 6;
-  bool json = false, list = false;
+  std::string name, spectral, plot;
+  std::optional<double> ior;
+  bool list = false;
 };
 
 struct SpectrumFile {
@@ -76,19 +73,9 @@ SpectrumFile readSpectrum(const std::string& path) {
 
 // Writes the options into a description, which points into `named` and `spectrum`.
 PellucidMaterialDesc describe(const Options& options, MaterialSource& named, SpectrumFile& spectrum) {
-  const bool coefficients = !options.scattering.empty() || !options.absorption.empty();
-  const bool skin = options.melanin || options.melaninType || options.haemoglobin;
-  const int given = !options.name.empty() + coefficients + !options.spectral.empty() + skin;
-  if (given != 1)
+  if (options.name.empty() == options.spectral.empty())
     throw UsageError(
-        "give one of: a preset's name (see --list) or a manifest's material in braces, --scattering and "
-        "--absorption, --spectral, or "
-        "--melanin, --melanin-type, --haemoglobin");
-  if (coefficients && (options.scattering.empty() || options.absorption.empty()))
-    throw UsageError("--scattering and --absorption go together");
-  if (options.g && !coefficients && options.spectral.empty())
-    throw UsageError("--g needs --scattering or --spectral");
-
+        "give one of: a preset's name (see --list) or a manifest's material in braces, or --spectral");
   const bool braces = options.name.starts_with('{');
   if (braces && options.ior) throw UsageError("--ior: the braces say the index of refraction");
 
@@ -100,26 +87,12 @@ PellucidMaterialDesc describe(const Options& options, MaterialSource& named, Spe
       throw UsageError("NAME: a sum of Gaussians is taken as it is, without the compiler");
     desc = describeMaterial(named, "NAME");
   }
-  desc.gaussianCount = options.gaussians;
-  desc.illuminant = options.illuminant == "A"   ? PELLUCID_ILLUMINANT_A
-                    : options.illuminant == "E" ? PELLUCID_ILLUMINANT_E
-                                                : PELLUCID_ILLUMINANT_D65;
-  if (options.g) desc.g = *options.g;
   if (options.ior) {
     // 0 would stand for the default.
     if (*options.ior == 0) throw InputError("", "ior", "0 is less than 1");
     desc.ior = *options.ior;
   }
-  if (coefficients) {
-    desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
-    std::copy_n(options.scattering.begin(), 3, desc.scattering);
-    std::copy_n(options.absorption.begin(), 3, desc.absorption);
-  } else if (skin) {
-    desc.kind = PELLUCID_MATERIAL_SKIN;
-    desc.melanin = options.melanin.value_or(desc.melanin);
-    desc.melaninType = options.melaninType.value_or(desc.melaninType);
-    desc.hemoglobin = options.haemoglobin.value_or(desc.hemoglobin);
-  } else if (!options.spectral.empty()) {
+  if (!options.spectral.empty()) {
     spectrum = readSpectrum(options.spectral);
     desc.kind = PELLUCID_MATERIAL_SPECTRAL;
     desc.wavelengthCount = static_cast<std::uint32_t>(spectrum.wavelength.size());
@@ -152,58 +125,6 @@ std::vector<const char*> parameterNames(const PellucidMaterial& material) {
   return {"a", "kappa", "z", "b", "c"};
 }
 
-const char* formName(const PellucidMaterial& material) {
-  return material.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ? "exp2" : "sinh_exp";
-}
-
-// A float as the shortest decimal that reads back as the same float.
-double shortest(float value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  double result = 0;
-  std::from_chars(text, end, result);
-  return result;
-}
-
-Json toJson(const Compiled& compiled, const std::vector<double>& thickness) {
-  const PellucidMaterial& material = compiled.material;
-  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
-  Json channels = Json::array();
-  for (std::uint32_t c = 0; c < 3; ++c) {
-    const PellucidChannelReport& report = compiled.report.channels[c];
-    const bool plain = report.scattering + report.absorption > 0;  // one medium with coefficients of its own
-    Json coefficients, variance = Json::array(), weight = Json::array(), rows = Json::array();
-    const std::vector<const char*> names = parameterNames(material);
-    for (std::size_t i = 0; i < names.size(); ++i)
-      coefficients[names[i]] = shortest(material.transmittance[c][i]);
-    for (std::uint32_t i = 0; i < material.gaussianCount; ++i) {
-      variance.push_back(shortest(material.gaussianVariance[c][i]));
-      weight.push_back(shortest(material.gaussianWeight[c][i]));
-    }
-    for (std::size_t i = 0; i < thickness.size(); ++i)
-      rows.push_back({{"mm", thickness[i]},
-                      {"exact", exact[3 * i + c].transmittance},
-                      {"exact_normal", exact[3 * i + c].transmittanceNormal},
-                      {"fitted", pellucidEvaluateTransmittance(&material, c, thickness[i])}});
-    channels.push_back({{"name", kChannelNames[c]},
-                        {"scattering", plain ? Json(report.scattering) : Json()},
-                        {"absorption", plain ? Json(report.absorption) : Json()},
-                        {"rho", report.rho},
-                        {"fit",
-                         {{"form", formName(material)},
-                          {"coefficients", coefficients},
-                          {"max_relative_error", report.transmittanceError}}},
-                        {"profile",
-                         {{"burley_d", shortest(material.burleyDistance[c])},
-                          {"gaussians", {{"variance", variance}, {"weight", weight}}},
-                          {"edge_error", report.edgeError},
-                          {"radius_999", shortest(material.radius[c])}}},
-                        {"thickness", rows}});
-  }
-  return {
-      {"name", compiled.report.name}, {"ior", compiled.report.ior}, {"unit", "mm"}, {"channels", channels}};
-}
-
 // One row of three numbers.
 void printRow(const std::string& title, const std::array<double, 3>& values) {
   std::cout << std::left << std::setw(26) << title << std::right << std::setprecision(6);
@@ -211,7 +132,7 @@ void printRow(const std::string& title, const std::array<double, 3>& values) {
   std::cout << '\n';
 }
 
-void printText(const Compiled& compiled, const std::vector<double>& thickness) {
+void print(const Compiled& compiled) {
   const PellucidMaterial& material = compiled.material;
   const auto row = [](const std::string& title, auto&& value) {
     printRow(title, {value(0u), value(1u), value(2u)});
@@ -255,14 +176,14 @@ void printText(const Compiled& compiled, const std::vector<double>& thickness) {
   }
 
   std::cout << "\nTransmittance: exact under Lambertian light, exact at normal incidence, fitted\n";
-  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
-  for (std::size_t i = 0; i < thickness.size(); ++i) {
+  const std::vector<PellucidSlab> exact = compiled.slabs(kThickness);
+  for (std::size_t i = 0; i < kThickness.size(); ++i) {
     std::ostringstream title;
-    title << thickness[i] << " mm";
+    title << kThickness[i] << " mm";
     row(title.str(), [&](std::uint32_t c) { return exact[3 * i + c].transmittance; });
     row("  normal", [&](std::uint32_t c) { return exact[3 * i + c].transmittanceNormal; });
     row("  fitted",
-        [&](std::uint32_t c) { return pellucidEvaluateTransmittance(&material, c, thickness[i]); });
+        [&](std::uint32_t c) { return pellucidEvaluateTransmittance(&material, c, kThickness[i]); });
   }
 }
 
@@ -321,18 +242,13 @@ void run(const Options& options) {
     for (std::uint32_t i = 0; i < pellucidPresetCount(); ++i) std::cout << pellucidPresetName(i) << '\n';
     return;
   }
-  for (const double d : options.thickness)
-    if (!std::isfinite(d)) throw InputError("", "thickness", "not a finite number");
   MaterialSource named;
   SpectrumFile spectrum;
   Compiled compiled = {describe(options, named, spectrum), {}, {}, options.spectral};
   requireMaterial(compiled.file, [&](PellucidMessageFn note, void* user) {
     return pellucidCompileMaterial(&compiled.desc, &compiled.material, &compiled.report, note, user);
   });
-  if (options.json)
-    std::cout << toJson(compiled, options.thickness).dump(2) << '\n';
-  else
-    printText(compiled, options.thickness);
+  print(compiled);
   if (!options.plot.empty()) writeMaterialPlot(options.plot, compiled);
 }
 
@@ -345,22 +261,8 @@ void addMaterialCommand(const Command& app) {
   command.option("NAME", options->name,
                  "a preset, see --list, or a manifest's material in braces (docs/materials.md)");
   command.flag("--list", options->list, "print the presets' names");
-  command.option("--scattering", options->scattering, "sigma_s of R,G,B in 1/mm; reduced when --g is 0")
-      .separatedBy(',')
-      .count(3);
-  command.option("--absorption", options->absorption, "sigma_a of R,G,B in 1/mm").separatedBy(',').count(3);
-  command.option("--g", options->g, "mean cosine of scattering, between -1 and 1 (default 0)");
   command.option("--ior", options->ior, "index of refraction, 1 to 3 (default: the preset's, else 1.4)");
-  command.option("--thickness", options->thickness, "mm, for the table").separatedBy(',');
-  command.option("--gaussians", options->gaussians, "how many Gaussians stand for the profile, 1 to 8");
   command.option("--spectral", options->spectral, "CSV of wavelength (nm), sigma_s, sigma_a (1/mm)");
-  command.option("--illuminant", options->illuminant, "for spectra and skin: D65, A or E")
-      .oneOf({"D65", "A", "E"});
-  command.option("--melanin", options->melanin,
-                 "skin (Donner & Jensen 2006): melanin in the epidermis, 0 to 1");
-  command.option("--melanin-type", options->melaninType, "share of eumelanin, 0 to 1");
-  command.option("--haemoglobin", options->haemoglobin, "blood in the dermis, 0 to 1");
-  command.flag("--json", options->json, "print JSON");
   command.option("--plot", options->plot, "write a PNG of T(d) and the profile");
   command.run([options] { run(*options); });
 }

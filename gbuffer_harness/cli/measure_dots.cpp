@@ -9,7 +9,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 
 #include "capture/material.h"
 #include "cli/capture_options.h"
@@ -18,7 +17,6 @@
 #include "cli/settings.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "gltf/gltf.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
 #include "replay/replay.h"
@@ -38,36 +36,14 @@ Axes axesOf(const DotTable& table) {
   return {side, up, glm::cross(side, up)};
 }
 
-glm::dvec3 unfolded(double x, double y) {
-  const double u = 1 - std::abs(x) - std::abs(y);
-  if (u >= 0) return {x, u, y};
-  return {std::copysign(1 - std::abs(y), x), u, std::copysign(1 - std::abs(x), y)};
-}
-
-// Across the light, so that the eye swings about the up axis where the light does not stand on it.
-glm::dvec3 sidewaysOf(const glm::dvec3& toLight, const Axes& axes) {
-  const glm::dvec3 across = glm::cross(axes.up, toLight);
-  return glm::length(across) > 1e-6 ? glm::normalize(across) : axes.side;
-}
-
 }  // namespace
 
 std::vector<Vector3> lightDirections(const DotTable& table) {
   const Axes axes = axesOf(table);
   std::vector<Vector3> directions;
-  const auto add = [&](const glm::dvec3& local) {
-    directions.push_back(
-        fromGlm(glm::normalize(local.x * axes.side + local.y * axes.up + local.z * axes.front)));
-  };
-  if (table.sphere) {
-    const double spacing = 2.0 / (table.size - 1);
-    for (int j = 0; j < table.size; ++j)
-      for (int i = 0; i < table.size; ++i) add(unfolded(i * spacing - 1, j * spacing - 1));
-  } else {
-    for (int i = 0; i < table.size; ++i) {
-      const double azimuth = 2 * std::numbers::pi * i / table.size;
-      add({std::sin(azimuth), 0, std::cos(azimuth)});
-    }
+  for (int i = 0; i < table.entries; ++i) {
+    const double azimuth = 2 * std::numbers::pi * i / table.entries;
+    directions.push_back(fromGlm(std::sin(azimuth) * axes.side + std::cos(azimuth) * axes.front));
   }
   return directions;
 }
@@ -81,7 +57,8 @@ std::vector<double> measureMinimumDots(const DotTable& table, const Swing& swing
   std::vector<std::vector<double>> light;  // by entry and step
   double most = 0;
   for (const Vector3& direction : lightDirections(table)) {
-    const glm::dvec3 toLight = toGlm(direction), sideways = sidewaysOf(toLight, axes);
+    const glm::dvec3 toLight = toGlm(direction);
+    const glm::dvec3 sideways = glm::cross(axes.up, toLight);  // the eye swings about the up axis
     light.emplace_back();
     for (int step = 0; step <= swing.steps; ++step) {
       const double dot = dotAt(step);
@@ -112,11 +89,9 @@ std::vector<double> measureMinimumDots(const DotTable& table, const Swing& swing
 namespace {
 
 struct Options {
-  std::string model, output, device, face = "0,0,1", up = "0,1,0", unit = "m";
-  SceneParameters scene;
-  std::vector<std::string> sceneSet, presets;
-  std::optional<int> entries, sphere;
-  int size = 64, shadowSize = 128;
+  CaptureOptions scene;
+  std::string output, face = "0,0,1", up = "0,1,0";
+  DotTable table;
   Swing swing;
   SettingsOptions settings;
 };
@@ -130,10 +105,7 @@ struct Object {
 };
 
 DotTable tableOf(const Options& options) {
-  if (options.entries && options.sphere) throw UsageError("--entries and --sphere exclude each other");
-  DotTable table;
-  table.sphere = options.sphere.has_value();
-  table.size = table.sphere ? *options.sphere : options.entries.value_or(table.size);
+  DotTable table = options.table;
   table.face = parseNumbers<3>("--face", options.face, "X,Y,Z");
   table.up = parseNumbers<3>("--up", options.up, "X,Y,Z");
   const glm::dvec3 face = toGlm(table.face), up = toGlm(table.up);
@@ -158,14 +130,8 @@ ReplaySettings settingsOf(const Options& options) {
 
 // Every view ray must have the same cosine with the light: cameras are orthographic.
 Object proceduralObject(const Options& options) {
-  SceneParameters scene = options.scene;
-  scene.width = scene.height = options.size;
-  scene.shadowSize = options.shadowSize;
+  SceneParameters scene = procedural(options.scene);
   scene.orthographic = true;
-  for (const std::string& text : options.sceneSet) {
-    const Assignment set = parseAssignment("--scene-set", text);
-    scene.options[set.key] = parseNumber<double>("--scene-set " + set.key, set.value);
-  }
   return {sceneCenter(scene), [scene](const Vector3& toLight, const Vector3& toEye) {
             SceneParameters aimed = scene;
             aimed.aim = Aim{toEye, toLight};
@@ -174,19 +140,13 @@ Object proceduralObject(const Options& options) {
 }
 
 Object modelObject(const Options& options, Device& device) {
-  GltfOptions gltf;
-  gltf.metersPerUnit = parseUnit(options.unit);
-  for (const std::string& text : options.presets) {
-    const Assignment set = parseAssignment("--material", text);
-    gltf.presets[set.key] = set.value;
-  }
-  const auto model = std::make_shared<Model>(loadGltf(options.model, gltf).model);
-  const RasterOptions raster{.width = options.size, .height = options.size, .shadowSize = options.shadowSize};
-  return {boundsOf(*model).center, [model, raster, &device](const Vector3& toLight, const Vector3& toEye) {
+  const auto scene = std::make_shared<CaptureModel>(captureModel(options.scene));
+  return {boundsOf(scene->model).center, [scene, &device](const Vector3& toLight, const Vector3& toEye) {
             Light light;
             for (std::size_t i = 0; i < 3; ++i) light.direction[i] = -toLight[i];
-            model->lights = {light};
-            return rasterize(device, *model, frameModel(*model, toEye, 0.5, 1, true), raster).capture;
+            scene->model.lights = {light};
+            return rasterize(device, scene->model, frameModel(scene->model, toEye, 0.5, 1, true), scene->raster)
+                .capture;
           }};
 }
 
@@ -207,15 +167,14 @@ double lightThrough(Capture& capture, const std::vector<PellucidMaterial>& mater
   return pixels > 0 ? sum / static_cast<double>(pixels) : 0;
 }
 
-void measure(const Options& options) {
-  if (options.scene.name.empty() == options.model.empty())
-    throw UsageError("measure-dots: either a model or --procedural is required");
+void measure(const Command& command, const Options& options) {
+  const bool isScene = isProcedural(command, options.scene);
   const DotTable table = tableOf(options);
   const ReplaySettings settings = settingsOf(options);
-  Device device({options.device, false});
+  Device device({options.scene.device, false});
   Replayer replayer(device);
-  const Object object = options.model.empty() ? proceduralObject(options) : modelObject(options, device);
-  const std::size_t entries = lightDirections(table).size();
+  const Object object = isScene ? proceduralObject(options) : modelObject(options, device);
+  const auto entries = static_cast<std::size_t>(table.entries);
   Progress progress("measuring", entries * (2 * static_cast<std::size_t>(options.swing.steps) + 1));
   std::vector<PellucidMaterial> materials;  // of every view
   const std::vector<double> dots =
@@ -226,7 +185,7 @@ void measure(const Options& options) {
         progress.advance();
         return through;
       });
-  const nlohmann::ordered_json json = {{"angle", table.sphere ? "minimum-dot-sphere" : "minimum-dot-azimuth"},
+  const nlohmann::ordered_json json = {{"angle", "minimum-dot-azimuth"},
                                        {"face", table.face},
                                        {"up", table.up},
                                        {"center", object.center},
@@ -245,17 +204,12 @@ void measure(const Options& options) {
 
 void addMeasureDotsCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
+  options->scene.size = "64x64";
+  options->scene.shadowSize = 128;
   const Command command = app.subcommand(
       "measure-dots", "Measure how far behind an object lights must be before they come through (a table)");
-  command.option("model", options->model, "glTF file, .glb or .gltf");
-  command.option("--procedural", options->scene.name, "name of a procedural scene instead");
-  command.option("--scene-set", options->sceneSet, "key=value, repeatable: an option of that scene");
-  command.option("--material", options->presets,
-                 "of a model: NAME=PRESET or NAME={a manifest's material}, repeatable; * all others");
-  command.option("--unit", options->unit, "of a model: mm, cm, m or meters");
   command.option("-o,--output", options->output, "JSON for --set @FILE; default: standard output");
-  command.option("--entries", options->entries, "lights around --up (default 36)").range(1, 360);
-  command.option("--sphere", options->sphere, "side of a map of all directions instead").range(3, 16);
+  command.option("--entries", options->table.entries, "lights around --up").range(1, 360);
   command.option("--face", options->face, "X,Y,Z the object looks along, world");
   command.option("--up", options->up, "X,Y,Z of the object, world");
   command.option("--steps", options->swing.steps, "of the camera over its quarter turn").range(1, 900);
@@ -263,11 +217,9 @@ void addMeasureDotsCommand(const Command& app) {
       .option("--threshold", options->swing.threshold,
               "what counts as light: this part of the most that any view shows")
       .range(0.0, 0.99);
-  command.option("--size", options->size, "pixels across a view").range(8, 2048);
-  command.option("--shadow-size", options->shadowSize, "texels across a shadow map").range(8, 8192);
-  command.option("--device", options->device, "part of the Vulkan device's name");
+  addCaptureOptions(command, options->scene, SceneUse::Replay);
   options->settings.addTo(command);
-  command.run([options] { measure(*options); });
+  command.run([options, command] { measure(command, *options); });
 }
 
 }  // namespace pellucid::harness

@@ -8,9 +8,9 @@
 
 namespace pellucid::harness {
 
+// The turn of MINIMUM_DOT_AZIMUTH.
 struct DotTable {
-  bool sphere = false;                       // MINIMUM_DOT_SPHERE's map, else MINIMUM_DOT_AZIMUTH's turn
-  int size = 36;                             // entries of the turn, 1..360, or of a side of the map, 3..16
+  int entries = 36;                          // 1..360
   Vector3 face = {0, 0, 1}, up = {0, 1, 0};  // world, not parallel
 };
 

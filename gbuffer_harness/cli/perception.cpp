@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "common/error.h"
@@ -16,11 +16,6 @@ namespace pellucid::harness {
 namespace {
 
 constexpr const char* kChannels[] = {"red", "green", "blue"};
-
-struct Options {
-  std::string answers;
-  bool json = false;
-};
 
 struct Answers {
   std::vector<std::string> scenes;  // in the order of the file
@@ -73,42 +68,18 @@ Moments momentsOf(const std::vector<double>& values) {
   return {mean, n > 1 ? std::sqrt(squares / (n - 1) / n) : 0};
 }
 
-nlohmann::ordered_json sourceJson(const VarianceSource& s) {
-  return {{"sum_of_squares", s.sumOfSquares}, {"degrees", s.degrees}, {"f", s.f}, {"p", s.p}};
-}
-
 void printSource(const char* name, const VarianceSource& s) {
   std::printf("%-16s %12.5g %8g %10.4g %10.3g %s\n", name, s.sumOfSquares, s.degrees, s.f, s.p,
               significance(s.p).c_str());
 }
 
-void perception(const Options& options) {
-  const Answers answers = sorted(options.answers);
+void perception(const std::string& file) {
+  const Answers answers = sorted(file);
   const std::size_t participants = answers.colors[0][0].size();
   // Red is the largest by construction of the question; the thesis compares green and blue.
   const Cells pair = {answers.colors[1], answers.colors[2]};
   const Anova anova = twoWayAnova(pair);
   const std::vector<CellComparison> comparisons = compareLevels(pair, 0, 1, anova);
-  if (options.json) {
-    nlohmann::ordered_json json = {{"participants", participants},
-                                   {"scenes", nlohmann::ordered_json::array()}};
-    for (std::size_t j = 0; j < answers.scenes.size(); ++j) {
-      nlohmann::ordered_json scene = {{"scene", answers.scenes[j]}};
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Moments m = momentsOf(answers.colors[c][j]);
-        scene[kChannels[c]] = {{"mean", m.mean}, {"standard_error", m.standardError}};
-      }
-      scene["green_blue"] = {{"t", comparisons[j].t}, {"p", comparisons[j].p}};
-      json["scenes"].push_back(scene);
-    }
-    json["anova"] = {
-        {"channel", sourceJson(anova.first)},
-        {"scene", sourceJson(anova.second)},
-        {"interaction", sourceJson(anova.interaction)},
-        {"residual", {{"sum_of_squares", anova.residual.sumOfSquares}, {"degrees", anova.residual.degrees}}}};
-    std::printf("%s\n", json.dump(2).c_str());
-    return;
-  }
   std::printf("%zu participants\n%-24s %22s %22s %22s\n", participants, "scene: mean, st. error", "red",
               "green", "blue");
   for (std::size_t j = 0; j < answers.scenes.size(); ++j) {
@@ -135,14 +106,13 @@ void perception(const Options& options) {
 }  // namespace
 
 void addPerceptionCommand(const Command& app) {
-  const auto options = std::make_shared<Options>();
+  const auto file = std::make_shared<std::string>();
   const Command command = app.subcommand(
       "perception", "Means, analysis of variance and comparisons of the answers of `view --perception`");
-  command.option("answers", options->answers, "CSV of participant,scene,red,green,blue,seconds").required();
-  command.flag("--json", options->json, "for programs");
-  command.run([options] {
-    if (!std::filesystem::exists(options->answers)) throw InputError(options->answers, "", "cannot be read");
-    perception(*options);
+  command.option("answers", *file, "CSV of participant,scene,red,green,blue,seconds").required();
+  command.run([file] {
+    if (!std::filesystem::exists(*file)) throw InputError(*file, "", "cannot be read");
+    perception(*file);
   });
 }
 

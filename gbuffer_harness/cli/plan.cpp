@@ -14,17 +14,15 @@ namespace pellucid::harness {
 void addPlanCommand(const Command& app) {
   struct Options {
     std::string input;
-    ManifestPreset preset = ManifestPreset::None;
     SettingsOptions settings;
   };
   auto options = std::make_shared<Options>();
   const Command command =
       app.subcommand("plan", "Print the dispatch plan of a capture as JSON; needs no device");
   command.option("capture", options->input, "manifest (.json) or EXR with an embedded one").required();
-  addPresetOption(command, options->preset);
   options->settings.addTo(command);
   command.run([options] {
-    const Capture capture = readCapture(options->input, options->preset);
+    const Capture capture = readCapture(options->input);
     FrameData data;
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     const ReplaySettings settings = options->settings.parse();

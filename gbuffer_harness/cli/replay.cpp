@@ -9,7 +9,6 @@
 #include <string>
 
 #include "capture/exr.h"
-#include "capture/manifest.h"
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
@@ -65,12 +64,11 @@ constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
-  bool png = false, stats = false, overwrite = false, keepLayers = false;
+  bool png = false, stats = false, overwrite = false;
   float exposure = 0;
   ToneMap toneMap = ToneMap::None;
   int jobs = 2;
-  std::optional<uint32_t> repeat, views;
-  ManifestPreset preset = ManifestPreset::None;
+  std::optional<uint32_t> repeat;
   SettingsOptions settings;
 };
 
@@ -156,14 +154,11 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
                      {kDebugAttribute, options.settings.debug}};
   const char* const names[] = {"R", "G", "B"};
   for (int c = 0; c < 3; ++c) part.channels.push_back({names[c], ExrFormat::Float, &image, c});
-  KeptLayers kept;
-  if (options.keepLayers) kept = readOtherLayers(readManifest(capture.name, options.preset).irradiance);
-  part.channels.insert(part.channels.end(), kept.channels.begin(), kept.channels.end());
   writeWhole(output, [&](const auto& file) { writeExrParts(file, {part}); });
 }
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
-  const Capture capture = readCapture(options.input, options.preset);
+  const Capture capture = readCapture(options.input);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   warn(coarseTables(capture));
   warn(thinBodies(capture, materials));
@@ -179,11 +174,6 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
         "preExposure %g: the largest light is %g, and halves hold at most 65504; the result is free of the "
         "factor\n",
         static_cast<double>(result.preExposure), largestLight(capture));
-  if (options.views) {
-    const ViewTimes times = replayer.timeViews(capture, materials, settings, *options.views, repeat);
-    std::printf("%u views: %.1f us in one recording, %.1f us in one each\n", *options.views, times.together,
-                times.apart);
-  }
   if (options.stats) std::printf("\n%s", statisticsText(result.plan, result.statistics).c_str());
   if (frame.blocks) std::printf("\n%s", blockLegend(*frame.blocks).c_str());
 
@@ -243,7 +233,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
         const std::scoped_lock lock(reportMutex);
         missing.push_back(frame);
       } else {
-        const Capture capture = readCapture(input(frame), options.preset);
+        const Capture capture = readCapture(input(frame));
         const std::vector<PellucidMaterial> materials = compileMaterials(capture);
         requireNearestDistance(capture, materials, settings);
         std::unique_lock lock(deviceMutex);
@@ -289,7 +279,6 @@ void replay(const Options& options) {
     throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
   if (options.toneMap != ToneMap::None && !wantsPng(options, settings) && options.triptych.empty())
     throw UsageError("--tonemap is of PNGs: --png or --triptych");
-  if (options.views && options.repeat == 0u) throw UsageError("--views times frames, and --repeat is 0");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
                                                       !std::filesystem::exists(options.input));
   if (!isSequence) {
@@ -297,7 +286,6 @@ void replay(const Options& options) {
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
   if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
-  if (options.views) throw UsageError("--views times one capture, not a sequence");
   if (options.stats) throw UsageError("--stats is of one capture, not a sequence");
   if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
@@ -326,20 +314,12 @@ void addReplayCommand(const Command& app) {
               "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
               "no times; default: 3, not of a sequence")
       .range(0, 1000);
-  command
-      .option("--views", options->views,
-              "also time as many copies of the frame, which must have the same bits, in one recording and "
-              "in one each; not of a sequence")
-      .range(2, 64);
   command.flag("--stats", options->stats, "print what the device decided: groups run, blocks with material");
-  command.flag("--keep-layers", options->keepLayers,
-               "also write the alpha and the other channels of the irradiance's file");
   command.flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command.option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command.option("--exposure", options->exposure, "factor for PNGs; default: from the picture").positive();
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   addToneMapOption(command, options->toneMap);
-  addPresetOption(command, options->preset);
   options->settings.blocks = true;
   options->settings.addTo(command);
   command.run([options] { replay(*options); });

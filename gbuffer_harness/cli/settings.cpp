@@ -92,21 +92,6 @@ ReplaySettings SettingsOptions::parse() const {
   return settings;
 }
 
-void resolveGather(ReplaySettings& settings, const Capture& capture,
-                   const std::vector<PellucidMaterial>& materials) {
-  FrameData data;
-  makeFrame(capture, materials, settings, data);
-  // The plan that chooses samples has one light with a shadow map, because a plan has no room for any number
-  // of lights.
-  const auto mapped = std::find_if(data.lights.begin(), data.lights.end(),
-                                   [](const PellucidLight& light) { return light.shadowMapCount > 0; });
-  data.frame.lightCount = mapped != data.lights.end();
-  data.frame.lights = data.lights.data() + (mapped - data.lights.begin());
-  const auto plan = std::make_unique<PellucidPlan>();
-  requireOk(pellucidBuildPlan(&data.frame, nullptr, plan.get()), data.frame, capture.name);
-  settings.translucency.gatherSamples = plan->gatherSamples;
-}
-
 std::string settingsJson(const ReplaySettings& settings) {
   nlohmann::ordered_json json;
   for (const Setting& setting : settingsTable()) {
@@ -131,12 +116,6 @@ std::string SettingsOptions::text() const {
   std::string all = "mode=" + mode;
   for (const std::string& s : assignments()) all += " " + s;
   return all;
-}
-
-void addPresetOption(const Command& command, ManifestPreset& preset) {
-  command.choice(
-      "--preset", preset, {{"blender", ManifestPreset::Blender}},
-      "blender: the capture is a multilayer EXR of Cycles with a JSON beside it (docs/captures.md)");
 }
 
 std::string extensionOf(const std::filesystem::path& path) { return lower(path.extension().string()); }

@@ -32,19 +32,10 @@ private:
   std::vector<std::string> assignments() const;  // key=value
 };
 
-// What --set @FILE reads as these settings of --mode physical: a JSON object. The debug view is no key; its
-// option is `debugOption`, or "".
+// The JSON object from which --set @FILE reads these settings in --mode physical. The debug view has no key;
+// debugOption() gives the value of its option, or "".
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
-
-// Replaces the samples by those of the module's plan for the capture, which has none where it does not
-// gather, for what is not the module. `materials`: with their own T(d). Throws InputError where the module
-// refuses the frame.
-void resolveGather(ReplaySettings& settings, const Capture& capture,
-                   const std::vector<PellucidMaterial>& materials);
-
-// --preset of the commands that read captures.
-void addPresetOption(const Command& command, ManifestPreset& preset);
 
 // --tonemap of the commands that write pictures. `map`: a ToneMap, or an optional one, which stays empty
 // without the option.

@@ -76,7 +76,7 @@ Json describeBinding(Compiler& compiler, const Resource& resource, const Binding
                         : type.name == std::string_view("uniformBuffer") ? "b"
                                                                          : "t") +
                        number;
-  if (language == ShaderLanguage::Msl)
+  else
     json["argument"] = (type.isBuffer ? "buffer(" : "texture(") + number + ")";
   return json;
 }
@@ -103,8 +103,7 @@ Json describeBindings(Compiler& compiler, ShaderLanguage language) {
 
 // Describes the shader and readies `compiler`, whose names the translation then has.
 Json describe(Compiler& compiler, const PipelineShader& shader, ShaderLanguage language) {
-  const std::string entryPoint = language == ShaderLanguage::Spirv ? "main" : shader.name;
-  compiler.rename_entry_point("main", entryPoint, spv::ExecutionModelGLCompute);
+  compiler.rename_entry_point("main", shader.name, spv::ExecutionModelGLCompute);
   compiler.set_enabled_interface_variables(compiler.get_active_interface_variables());
   const Json constants = specialize(compiler, shader);
   const bool pushes =
@@ -112,16 +111,14 @@ Json describe(Compiler& compiler, const PipelineShader& shader, ShaderLanguage l
   return {{"pipeline", shader.pipeline},
           {"name", pellucidPipelineName(shader.pipeline)},
           {"shadowViewType", shader.shadowViewType},
-          {"entryPoint", entryPoint},
+          {"entryPoint", shader.name},
           {"workgroupSize", workgroupSize(compiler)},
           {"specializationConstants", constants},
           {"pushConstantBytes", pushes ? PELLUCID_PUSH_CONSTANT_BYTES : 0},
           {"bindings", describeBindings(compiler, language)}};
 }
 
-const char* languageName(ShaderLanguage language) {
-  return language == ShaderLanguage::Hlsl ? "HLSL" : language == ShaderLanguage::Msl ? "MSL" : "SPIR-V";
-}
+const char* languageName(ShaderLanguage language) { return language == ShaderLanguage::Hlsl ? "HLSL" : "MSL"; }
 
 TranslatedShader toHlsl(const PipelineShader& shader) {
   spirv_cross::CompilerHLSL compiler(shader.shader.words, shader.shader.wordCount);
@@ -160,13 +157,6 @@ TranslatedShader toMsl(const PipelineShader& shader) {
   return {compiler.compile(), description};
 }
 
-TranslatedShader toSpirv(const PipelineShader& shader) {
-  const PellucidShader& spirv = shader.shader;
-  Compiler compiler(spirv.words, spirv.wordCount);
-  return {{reinterpret_cast<const char*>(spirv.words), spirv.wordCount * sizeof *spirv.words},
-          describe(compiler, shader, ShaderLanguage::Spirv)};
-}
-
 }  // namespace
 
 std::vector<PipelineShader> pipelineShaders() {
@@ -185,9 +175,7 @@ std::vector<PipelineShader> pipelineShaders() {
 
 TranslatedShader translateShader(const PipelineShader& shader, ShaderLanguage language) {
   try {
-    return language == ShaderLanguage::Hlsl  ? toHlsl(shader)
-           : language == ShaderLanguage::Msl ? toMsl(shader)
-                                             : toSpirv(shader);
+    return language == ShaderLanguage::Hlsl ? toHlsl(shader) : toMsl(shader);
   } catch (const spirv_cross::CompilerError& error) {
     throw InputError("pipeline " + shader.name, languageName(language), error.what());
   }
@@ -198,31 +186,14 @@ namespace {
 struct Output {
   ShaderLanguage language;
   const char *option, *help, *extension, *index, *target;
-  std::string folder;  // empty: not asked for
+  std::string folder = {};  // empty: not asked for
 };
 
 struct Options {
-  Output outputs[3] = {{ShaderLanguage::Hlsl,
-                        "--hlsl",
-                        "folder for HLSL and hlsl.json",
-                        ".hlsl",
-                        "hlsl.json",
-                        "Shader Model 6.0",
-                        {}},
-                       {ShaderLanguage::Msl,
-                        "--msl",
-                        "folder for the Metal Shading Language and msl.json",
-                        ".metal",
-                        "msl.json",
-                        "Metal 2.3",
-                        {}},
-                       {ShaderLanguage::Spirv,
-                        "--spirv",
-                        "folder for SPIR-V and spirv.json",
-                        ".spv",
-                        "spirv.json",
-                        "Vulkan 1.1",
-                        {}}};
+  Output outputs[2] = {
+      {ShaderLanguage::Hlsl, "--hlsl", "folder for HLSL and hlsl.json", ".hlsl", "hlsl.json", "Shader Model 6.0"},
+      {ShaderLanguage::Msl, "--msl", "folder for the Metal Shading Language and msl.json", ".metal", "msl.json",
+       "Metal 2.3"}};
 };
 
 void write(const Output& output) {
@@ -253,7 +224,7 @@ void writeAll(const Options& options) {
     any = true;
     write(output);
   }
-  if (!any) throw UsageError("shaders: there is nothing to write without --hlsl, --msl or --spirv DIR");
+  if (!any) throw UsageError("shaders: there is nothing to write without --hlsl or --msl DIR");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace pellucid::harness {
 
-enum class ShaderLanguage { Hlsl, Msl, Spirv };  // Shader Model 6.0, Metal 2.3, the module's own words
+enum class ShaderLanguage { Hlsl, Msl };  // Shader Model 6.0, Metal 2.3
 
 // Bindings have registers and arguments of their numbers, in HLSL of space 0. These are beside them.
 constexpr uint32_t kHlslConstantSpace =
@@ -27,7 +27,7 @@ struct PipelineShader {
 std::vector<PipelineShader> pipelineShaders();  // in the order of pipelines
 
 struct TranslatedShader {
-  std::string text;  // SPIR-V: its bytes
+  std::string text;
   nlohmann::ordered_json
       description;  // entry point, workgroup size, constants and bindings; packaging/README.md
 };

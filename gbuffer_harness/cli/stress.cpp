@@ -7,22 +7,18 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "capture/write.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "common/error.h"
-#include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "stress/results.h"
 #include "stress/stress.h"
 
 namespace pellucid::harness {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using stress::StressFrame;
 using stress::StressOptions;
 using stress::StressResult;
@@ -33,8 +29,7 @@ constexpr int kShown = 3;
 
 struct Options {
   StressOptions stress;
-  std::string device, folder, json, results, compareWith;
-  bool guarded = false;
+  std::string device, folder;
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -44,11 +39,9 @@ std::string againText(const Options& options, std::uint64_t frame) {
   const StressOptions defaults, &given = options.stress;
   std::string text = "pellucid stress --seed " + std::to_string(given.seed) + " --first " +
                      std::to_string(frame) + " --frames 1";
-  if (given.limits.gatherSamples) text += " --gather " + std::to_string(*given.limits.gatherSamples);
   if (given.limits.pixels != defaults.limits.pixels)
     text += " --pixels " + std::to_string(given.limits.pixels);
   if (given.validate) text += " --validate";
-  if (options.guarded) text += " --guarded";
   return text;
 }
 
@@ -81,41 +74,11 @@ private:
   std::map<std::string, int> count_;
 };
 
-Json toJson(const stress::CheckCount& count) {
-  return {{"done", count.done},
-          {"violations", count.violations},
-          {"worst", std::isfinite(count.worst.value) ? Json(count.worst.value) : Json("infinite")},
-          {"worstFrame", count.worstFrame}};
-}
-
-Json toJson(const stress::Difference& d) {
-  return {{"frames", d.frames},        {"sameBits", d.sameBits}, {"values", d.values},
-          {"above1e-3", d.above3},     {"above1e-2", d.above2},  {"worst", d.worst.value},
-          {"worstFrame", d.worstFrame}};
-}
-
 template <class... Cell>
 void printRow(const std::string& name, const Cell&... cells) {
   std::cout << std::left << std::setw(18) << name << std::right << std::setprecision(2);
   ((std::cout << std::setw(11) << cells), ...);
   std::cout << '\n';
-}
-
-void print(const stress::ResultsReader& other) {
-  printRow("difference", "frames", "same bits", "values", "above 1e-3", "above 1e-2", "worst", "frame");
-  for (const auto& [name, d] : {std::pair{"tame", &other.tame}, std::pair{"wild", &other.wild}})
-    printRow(name, d->frames, d->sameBits, d->values, d->above3, d->above2, d->worst.value, d->worstFrame);
-}
-
-Json toJson(const StressOptions& options, const StressResult& result) {
-  Json json = {{"device", result.device},          {"seed", options.seed},
-               {"first", options.first},           {"frames", result.frames},
-               {"recordings", result.recordings},  {"pixels", result.pixels},
-               {"seconds", result.seconds},        {"refusedTame", result.refusedTame},
-               {"refusedWild", result.refusedWild}};
-  for (const stress::CheckResult& check : result.checks)
-    json["checks"][check.name] = {{"tame", toJson(check.tame)}, {"wild", toJson(check.wild)}};
-  return json;
 }
 
 void print(const StressOptions& options, const StressResult& result) {
@@ -134,23 +97,11 @@ void run(Options& options) {
   StressOptions& s = options.stress;
   // Errors of these options come before a device is opened.
   if (!s.only.empty()) stress::requireCheck(s.only);
-  std::optional<stress::ResultsWriter> writer;
-  std::optional<stress::ResultsReader> reader;
-  if (!options.results.empty()) writer.emplace(options.results);
-  if (!options.compareWith.empty()) reader.emplace(options.compareWith);
-  DeviceOptions wanted{options.device, s.validate};
-  wanted.guarded = options.guarded;
-  stress::Renderer renderer(wanted);
+  stress::Renderer renderer({options.device, s.validate});
   Reporter reporter(options);
   stress::StressEvents events;
-  if (options.guarded)
-    events.started = [&](std::uint64_t frame) { reportGuardFaults(againText(options, frame).c_str()); };
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);
-  };
-  events.rendered = [&](const StressFrame& frame, const Image& output) {
-    if (writer) writer->add(frame, output);
-    if (reader && !reader->ended()) reader->add(frame, output);
   };
   StressResult result;
   {
@@ -168,12 +119,6 @@ void run(Options& options) {
     result = stress::runStress(renderer, s, events);
   }
   print(s, result);
-  if (reader) print(*reader);
-  if (!options.json.empty()) {
-    Json json = toJson(s, result);
-    if (reader) json["differences"] = {{"tame", toJson(reader->tame)}, {"wild", toJson(reader->wild)}};
-    writeWholeText(options.json, json.dump(2) + "\n");
-  }
   if (result.violations() > 0) throw LimitExceeded(std::to_string(result.violations()) + " violations");
 }
 
@@ -207,21 +152,11 @@ void addStressCommand(const Command& app) {
       .excludes(seconds);
   command.option("--seed", s.seed, "of all frames");
   command.option("--first", s.first, "index of the first frame; even ones are tame, odd ones wild");
-  command.option("--gather", s.limits.gatherSamples, "samples of all frames; default: any")
-      .oneOf({0, 4, 8, 16, 32, 64});
   command.option("--pixels", s.limits.pixels, "of the largest frame").range(16, 1 << 26);
   command.option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
   command.flag("--validate", s.validate,
                "with Vulkan's core and synchronization validation, whose messages are violations");
-  command.flag(
-      "--guarded", options->guarded,
-      "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
-      "like indices: an access beyond the constants ends the command");
   command.option("-o,--output", options->folder, "folder for captures of frames that violate a check");
-  command.option("--json", options->json, "file for the summary");
-  command.option("--results", options->results, "file for the outputs, to compare another device's with");
-  command.option("--compare-with", options->compareWith,
-                 "file of --results of the same seed, first frame and limits");
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   command.run([options] { run(*options); });
 }

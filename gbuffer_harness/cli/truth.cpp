@@ -22,7 +22,6 @@
 #include "raster/bodies.h"
 #include "raster/model.h"
 #include "reference/path_tracer/emitters.h"
-#include "reference/path_tracer/light_paths.h"
 #include "reference/path_tracer/truth.h"
 #include "scene/model.h"
 #include "scene/render.h"
@@ -115,7 +114,6 @@ struct Options {
   double seconds = 0;
   int jobs = 0;
   bool overwrite = false;
-  std::string entry = "lambert";
 };
 
 // The scene, seen twice: as a G-buffer, and as what rays meet.
@@ -228,7 +226,6 @@ Scene makeScene(const Command& command, const Options& options) {
   hash.add(scene.emitters, scene.capture);
   if (!options.like.empty())
     hash.add(scene.capture.material, scene.capture.hiddenIrradiance.data, scene.capture.albedo.data);
-  hash.add(options.entry);
   scene.hash = hash.text();
   return scene;
 }
@@ -264,8 +261,7 @@ public:
   Run(const Options& options, Scene& scene, reference::TruthSums sums)
       : options_(options), scene_(scene), sums_(std::move(sums)), begin_(Clock::now()), written_(begin_) {}
 
-  template <class Tracer>
-  void trace(const Tracer& tracer) {
+  void trace(const reference::TruthTracer& tracer) {
     const std::uint64_t first = sums_.samples;
     const bool timed = options_.seconds > 0;
     const auto rows = static_cast<std::uint64_t>(scene_.capture.height);
@@ -334,9 +330,6 @@ void truth(const Command& command, const Options& options) {
     throw InputError(options.output, "", "cannot be written: there is no folder " + folder.string());
   if (!options.like.empty()) refuseScene(command);
   Scene scene = makeScene(command, options);
-  // A model given with a capture has materials of its own numbering.
-  if (!options.like.empty() && options.entry != "lambert" && scene.capture.materials.size() > 1)
-    throw UsageError("--entry: with --like paths can begin at lights for captures of one material only");
   const std::vector<reference::TraceMedium> media =
       reference::traceMedia(scene.capture.materials, scene.capture.name);
   reference::TruthSums sums = earlier(options, scene);
@@ -350,13 +343,10 @@ void truth(const Command& command, const Options& options) {
                          " pixels with a material show the scene that is traced; is --unit right?");
   if (pixels == 0)
     throw InputError(scene.capture.name, "material", "no pixel has one: there is nothing to trace");
-  if (surface.missed > 0 && options.entry == "lambert")
+  if (surface.missed > 0)
     warn({std::to_string(surface.missed) + " pixels show a surface that no ray met; their truth is 0"});
   Run run(options, scene, std::move(sums));
-  if (options.entry == "lambert")
-    run.trace(reference::TruthTracer(scene.capture, surface, *scene.traced, media, scene.emitters));
-  else
-    run.trace(reference::LightPaths(scene.capture, *scene.traced, media, scene.emitters));
+  run.trace(reference::TruthTracer(scene.capture, surface, *scene.traced, media, scene.emitters));
   const std::uint64_t added = run.sums().samples - before;
   std::printf("%s: %zu pixels, %llu samples each, %.0f paths a second\n", options.output.c_str(), pixels,
               static_cast<unsigned long long>(run.sums().samples),
@@ -381,11 +371,6 @@ void addTruthCommand(const Command& app) {
   command.option("--like", options->like,
                  "capture of this model or scene, made anywhere, whose camera, G-buffer, lights and "
                  "materials the output gets");
-  command
-      .option("--entry", options->entry,
-              "lambert: light enters diffusely, as a G-buffer's irradiance has no direction; refracted: "
-              "light enters in its own direction, by Fresnel's equations")
-      .oneOf({"lambert", "refracted"});
   command.option("--truth-seed", options->seed, "seed of the paths' random numbers");
   command.option("--jobs", options->jobs, "threads, on which the result does not depend; 0: all")
       .range(0, 4096);

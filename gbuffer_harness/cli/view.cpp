@@ -103,7 +103,7 @@ std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, c
       return sceneSource(parameters, materials);
     };
   return [scene](Device& device) {
-    // What comes through beside what is lit.
+    // A light behind the model and one in front: light that comes through beside lit surfaces.
     CaptureModel model = captureModel(scene, {0}, {kBackLight, kFrontLight});
     say(model);
     return modelSource(device, std::move(model.model), model.camera, model.raster);

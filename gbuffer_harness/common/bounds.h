@@ -6,7 +6,7 @@
 
 namespace pellucid::harness {
 
-// What a float32, or a decimal of seven digits, may lie off its value: relative, absolute at a bound of 0.
+// The rounding of a float32, or of a decimal of seven digits: relative, absolute at a bound of 0.
 inline constexpr double kRounding = 1e-6;
 
 inline double roundingAt(double bound) { return kRounding * (bound == 0 ? 1 : std::abs(bound)); }

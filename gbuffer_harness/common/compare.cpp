@@ -173,21 +173,4 @@ std::vector<double> relativeNoise(const Image& image, const Image& standardError
   return noise;
 }
 
-std::vector<double> chiSquared(const Image& a, const Image& errorA, const Image& b, const Image& errorB,
-                               const std::vector<std::uint8_t>& mask, int box) {
-  std::vector<double> result;
-  for (int c = 0; c < std::min(a.channels, b.channels); ++c) {
-    double squares = 0, variance = 0;
-    std::size_t blocks = 0;
-    forWholeBlocks(a, mask, box, [&](int left, int top) {
-      ++blocks;
-      squares += squared(blockSum(a, left, top, box, c, itself) - blockSum(b, left, top, box, c, itself));
-      variance += blockSum(errorA, left, top, box, c, squared) + blockSum(errorB, left, top, box, c, squared);
-    });
-    if (blocks == 0) return {};
-    result.push_back(ratio(squares, variance));
-  }
-  return result;
-}
-
 }  // namespace pellucid::harness

@@ -50,10 +50,4 @@ Comparison compareImages(const Image& a, const Image& b, const std::vector<std::
 std::vector<double> relativeNoise(const Image& image, const Image& standardError,
                                   const std::vector<std::uint8_t>& mask, int box);
 
-// Squared difference of two images over what their noise explains, R G B: the sum over the samples of
-// (A - B)^2 over that of the squared standard errors. 1 when they are equal but for noise. Samples as in
-// relativeNoise(); an empty error is that of an exact image. Empty without a sample.
-std::vector<double> chiSquared(const Image& a, const Image& errorA, const Image& b, const Image& errorB,
-                               const std::vector<std::uint8_t>& mask, int box);
-
 }  // namespace pellucid::harness

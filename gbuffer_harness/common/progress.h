@@ -1,4 +1,4 @@
-// What long work shows on a terminal.
+// Progress of long work on a terminal.
 #pragma once
 
 #include <atomic>

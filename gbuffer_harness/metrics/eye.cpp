@@ -4,10 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-
-#include "common/compare.h"
-#include "common/error.h"
-#include "common/png.h"
+#include <optional>
 
 namespace pellucid::harness {
 
@@ -41,13 +38,8 @@ Neighborhood around(const Image& image, const Surfaces& surfaces, const Mask& ma
 
 }  // namespace
 
-std::size_t IsolatedPixels::alone(const IsolatedPixels& other) const {
-  std::size_t pixels = 0;
-  for (std::size_t i = 0; i < marks.size(); ++i) pixels += (marks[i] & ~other.marks[i]) != 0;
-  return pixels;
-}
-
-IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask, double contrast) {
+IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask) {
+  constexpr double kContrast = 1.3;
   requireImage("image", image, surfaces.width(), surfaces.height(), mask);
   IsolatedPixels result;
   result.marks.resize(image.pixels());
@@ -60,33 +52,13 @@ IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const 
       std::uint8_t mark = 0;
       for (std::size_t c = 0; c < 3; ++c) {
         const double value = image.at(x, y)[c], seen = kDarkestPart * rms[c];
-        if (value > seen && value > contrast * neighbors.largest[c]) mark |= kBright;
-        if (neighbors.least[c] > seen && value * contrast < neighbors.least[c]) mark |= kDark;
+        if (value > seen && value > kContrast * neighbors.largest[c]) mark |= kBright;
+        if (neighbors.least[c] > seen && value * kContrast < neighbors.least[c]) mark |= kDark;
       }
-      result.bright += (mark & kBright) != 0;
-      result.dark += (mark & kDark) != 0;
       result.count += mark != 0;
       result.marks[pixelIndex(image, x, y)] = mark;
     }
   return result;
-}
-
-std::vector<std::uint8_t> markIsolated(const Image& image, const IsolatedPixels& isolated, float exposure) {
-  constexpr std::array<std::array<std::uint8_t, 3>, 4> kColors = {
-      {{0, 0, 0}, {255, 40, 40}, {60, 120, 255}, {255, 40, 255}}};
-  constexpr int kFrame = 2;  // pixels from the marked one, which stays visible with its neighbors
-  std::vector<std::uint8_t> picture = toSrgb(image, exposure);
-  for (std::uint8_t& value : picture) value /= 2;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const std::uint8_t mark = isolated.marks[pixelIndex(image, x, y)];
-      if (mark == 0) continue;
-      for (int py = std::max(y - kFrame, 0); py <= std::min(y + kFrame, image.height - 1); ++py)
-        for (int px = std::max(x - kFrame, 0); px <= std::min(x + kFrame, image.width - 1); ++px)
-          if (std::max(std::abs(px - x), std::abs(py - y)) == kFrame)
-            std::copy_n(kColors[mark].begin(), 3, &picture[3 * pixelIndex(image, px, py)]);
-    }
-  return picture;
 }
 
 namespace {
@@ -150,18 +122,17 @@ std::vector<std::uint8_t> ratioMap(const Image& a, const Image& b, const Mask& m
   return picture;
 }
 
-EyeMetrics measureEye(const Image& result, const Capture& capture, double exposure) {
-  if (!capture.truth) throw InputError(capture.name, "truth", "missing: there is nothing to compare with");
-  const Image& truth = capture.truth->image;
-  const Surfaces surfaces(capture);
-  const Mask mask = comparisonMask(capture.material, capture.irradiance, Subset::All);
+EyeMetrics measureEye(const Image& result, const Image& truth, const Mask& mask, const Capture* capture) {
+  const Surfaces surfaces = capture ? Surfaces(*capture) : Surfaces(truth.width, truth.height);
   EyeMetrics metrics;
   metrics.isolated = findIsolated(result, surfaces, mask).count;
   metrics.isolatedInTruth = findIsolated(truth, surfaces, mask).count;
-  const SpotImage input(litAlbedo(capture), surfaces, mask), seen(result, surfaces, mask);
-  metrics.spots = seen.lackedBy(SpotImage(truth, surfaces, mask), seen.find(&input)).size();
+  const SpotImage seen(result, surfaces, mask);
+  std::optional<SpotImage> input;
+  if (capture) input.emplace(litAlbedo(*capture), surfaces, mask);
+  metrics.spots = seen.lackedBy(SpotImage(truth, surfaces, mask), seen.find(input ? &*input : nullptr)).size();
   metrics.tint = measureTint(result, truth, mask);
-  metrics.flip = measureFlip(result, truth, mask, exposure);
+  metrics.flip = measureFlip(result, truth, mask);
   return metrics;
 }
 

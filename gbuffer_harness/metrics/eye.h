@@ -1,5 +1,5 @@
-// What the eye sees of a result: FLIP, isolated pixels, spots, and where it is brighter, darker or of another
-// color than the truth.
+// Faults of a result that the eye sees: FLIP, isolated pixels, spots, and places that are brighter, darker or
+// of another color than in the truth.
 #pragma once
 
 #include <array>
@@ -28,39 +28,27 @@ inline constexpr double kPixelsPerDegree = 67;
 Image flipImage(const Image& test, const Image& reference, double exposure,
                 double pixelsPerDegree = kPixelsPerDegree);
 
+// Over the mask, 0 .. 1.
 struct Flip {
-  double mean = 0, p99 = 0;  // 0 .. 1, over the mask; p99: 99 % of the pixels are at or below (nearest rank)
-  double exposure = 1;       // that both images were multiplied by
+  double mean = 0, p99 = 0;  // p99: 99 % of the pixels are at or below (nearest rank)
 };
 
-// The pixels outside of the mask are black in both images. exposure: > 0, or 0: autoExposure() of the
-// reference inside the mask, which brings its 99th percentile to 0.8.
-Flip measureFlip(const Image& test, const Image& reference, const Mask& mask, double exposure = 0);
+// Both images have the exposure that brings the reference's 99th percentile inside the mask to 0.8. The pixels outside
+// of the mask are black in both images.
+Flip measureFlip(const Image& test, const Image& reference, const Mask& mask);
 
 // Isolated pixels: single pixels that stick out of their surface, as dots.
 
 struct IsolatedPixels {
-  std::size_t bright = 0, dark = 0;  // pixels; one that is bright in one channel and dark in another is both
-  std::size_t count = 0;             // pixels that are either
-  Mask marks;                        // one value a pixel; 1: bright, 2: dark, 3: both
-
-  // Pixels that are isolated here and not in the same way in another image of the size.
-  std::size_t alone(const IsolatedPixels& other) const;
+  std::size_t count = 0;
+  Mask marks;  // one value a pixel; 1: bright in some channel, 2: dark, 3: both
 };
 
-constexpr double kIsolated = 1.3, kNearlyIsolated = 1.1;
-
-// A pixel is isolated when one of its channels is above `contrast` times the largest, or below 1/contrast of
-// the least, of the neighbors that show its surface, of which there must be at least 5 of 8 (as along a
-// silhouette). The brighter of the two values must be above kDarkestPart of that channel's RMS over the mask.
-// Pixels that do not count are neither judged nor neighbors. Throws InputError when the image has not three
-// channels and the surfaces' size.
-IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask,
-                            double contrast = kIsolated);
-
-// The image in sRGB at an exposure and half as bright, with a frame around each isolated pixel: red around
-// bright ones, blue around dark ones, magenta around pixels that are both. 3 bytes a pixel, row 0 first.
-std::vector<std::uint8_t> markIsolated(const Image& image, const IsolatedPixels& isolated, float exposure);
+// A pixel is isolated when one of its channels is above 1.3 times the largest, or below 1/1.3 of the least, of the
+// neighbors that show its surface, of which there must be at least 5 of 8 (as along a silhouette). The brighter of the
+// two values must be above kDarkestPart of that channel's RMS over the mask. Pixels that do not count are neither judged
+// nor neighbors. Throws InputError when the image has not three channels and the surfaces' size.
+IsolatedPixels findIsolated(const Image& image, const Surfaces& surfaces, const Mask& mask);
 
 inline constexpr int kTintBlock = 8;  // pixels a side
 inline constexpr double kTintDarkestPart = 0.1;
@@ -95,8 +83,8 @@ struct EyeMetrics {
   Flip flip;
 };
 
-// `result`: three channels. exposure: as measureFlip(). Throws InputError without a truth, or when the sizes
-// differ.
-EyeMetrics measureEye(const Image& result, const Capture& capture, double exposure = 0);
+// `capture`: says which pixels show one surface, and what the irradiance explains; null: all pixels show one. Throws
+// InputError unless both images have three channels and the mask's size.
+EyeMetrics measureEye(const Image& result, const Image& truth, const Mask& mask, const Capture* capture);
 
 }  // namespace pellucid::harness

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "common/compare.h"
 #include "reference/camera.h"
@@ -177,6 +178,21 @@ Image Reprojection::motion() const {
       motion.at(x, y)[1] = static_cast<float>(moved.y);
     }
   return motion;
+}
+
+std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Render& render, Image* difference) {
+  std::optional<Reprojection> reprojection;
+  if (last_) {
+    reprojection.emplace(*last_, capture);
+    capture.motion = reprojection->motion();
+  }
+  std::vector<Image> images = render(capture);
+  std::vector<Flicker> flicker;
+  for (std::size_t i = 0; i < images.size() && reprojection && !switches; ++i)
+    flicker.push_back(reprojection->compare(images_[i], images[i], i == 0 ? difference : nullptr));
+  images_ = std::move(images);
+  last_ = std::move(capture);
+  return flicker;
 }
 
 Flicker flickerOf(const std::vector<Flicker>& steps) {

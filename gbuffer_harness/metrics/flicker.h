@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -63,7 +64,23 @@ private:
   glm::dmat4 earlierFromLater_;
 };
 
-// Of a path: the mean of its steps' RMSE, and the largest of each other statistic.
+// The frames of a path in their order, each beside the frame before.
+class PathFlicker {
+public:
+  using Render = std::function<std::vector<Image>(const Capture&)>;
+
+  // Gives the capture its motion, renders its images, and compares each with the image of the frame before. `switches`: a
+  // light goes on or off before this frame. Empty for the first frame and where lights switch. `difference`: gets the
+  // first image's, as Reprojection::compare() gives it.
+  std::vector<Flicker> next(Capture capture, bool switches, const Render& render, Image* difference = nullptr);
+  const std::vector<Image>& images() const { return images_; }  // of the last frame
+
+private:
+  std::optional<Capture> last_;
+  std::vector<Image> images_;
+};
+
+// The flicker of a path: the mean of its steps' RMSE, and the largest of each other statistic.
 Flicker flickerOf(const std::vector<Flicker>& steps);
 
 // Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.

@@ -255,13 +255,12 @@ Image flipImage(const Image& test, const Image& reference, double exposure, doub
   return result;
 }
 
-Flip measureFlip(const Image& test, const Image& reference, const Mask& mask, double exposure) {
+Flip measureFlip(const Image& test, const Image& reference, const Mask& mask) {
   requireImage("A", test, reference.width, reference.height, mask);
   requireImage("B", reference, reference.width, reference.height, mask);
   const Image a = blackOutside(test, mask), b = blackOutside(reference, mask);
   Flip flip;
-  flip.exposure = exposure > 0 ? exposure : static_cast<double>(autoExposure(b));
-  const Image map = flipImage(a, b, flip.exposure);
+  const Image map = flipImage(a, b, static_cast<double>(autoExposure(b)));
   std::vector<float> values;
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[i] != 0) values.push_back(map.data[i]);

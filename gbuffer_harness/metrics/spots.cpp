@@ -21,7 +21,7 @@ constexpr std::array<std::array<int, 2>, 8> kSteps = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}}};
 constexpr std::size_t kStraightSteps = 4;  // the first of them
 
-// Of normal noise: the median of |value - mean of four neighbors| over the standard deviation of the value.
+// The median of |value - mean of four neighbors| over the standard deviation of the value, for normal noise.
 const double kGrainOfNoise = 0.6745 * std::sqrt(1 + 1.0 / 4);
 
 // Pixels of the 9x9 around (x, y) that steps reach, (x, y) first.
@@ -83,7 +83,7 @@ SpotImage::SpotImage(const Image& image, const Surfaces& surfaces, const Mask& m
         pixels_[index(x, y)].value[c] =
             std::max(image.at(x, y)[c], static_cast<float>(kDarkestPart * rms[c]));
     }
-  // What a pixel differs by from its neighbors, which no slope changes.
+  // The difference of a pixel from its neighbors, which no slope changes.
   std::vector<Color> grain(image.pixels());
   parallelRows(height_, 0, [&](int y) {
     for (int x = 0; x < width_; ++x) {
@@ -190,35 +190,11 @@ std::vector<Spot> SpotImage::lackedBy(const SpotImage& other, const std::vector<
   return lacked;
 }
 
-std::size_t brightOf(const std::vector<Spot>& spots) {
-  return static_cast<std::size_t>(
-      std::count_if(spots.begin(), spots.end(), [](const Spot& spot) { return spot.isBright; }));
-}
-
 Image litAlbedo(const Capture& capture) {
   Image lit = capture.irradiance;
   for (std::size_t i = 0; i < lit.data.size() && !capture.albedo.empty(); ++i)
     lit.data[i] *= capture.albedo.data[i];
   return lit;
-}
-
-std::vector<std::uint8_t> markSpots(std::vector<std::uint8_t> picture, const Image& image,
-                                    const std::vector<Spot>& spots, const std::vector<Spot>& lacked) {
-  constexpr std::array<std::uint8_t, 3> kBrightColor = {255, 230, 40}, kDarkColor = {40, 230, 255};
-  constexpr int kAway = 2;  // pixels from the spot, which stays visible with its neighbors
-  const auto draw = [&](const Spot& spot, int divisor) {
-    std::array<std::uint8_t, 3> color = spot.isBright ? kBrightColor : kDarkColor;
-    for (std::uint8_t& channel : color) channel = static_cast<std::uint8_t>(channel / divisor);
-    const int left = spot.low[0] - kAway, right = spot.high[0] + kAway;
-    const int top = spot.low[1] - kAway, bottom = spot.high[1] + kAway;
-    for (int y = std::max(top, 0); y <= std::min(bottom, image.height - 1); ++y)
-      for (int x = std::max(left, 0); x <= std::min(right, image.width - 1); ++x)
-        if (x == left || x == right || y == top || y == bottom)
-          std::copy_n(color.begin(), 3, &picture[3 * pixelIndex(image, x, y)]);
-  };
-  for (const Spot& spot : spots) draw(spot, 2);
-  for (const Spot& spot : lacked) draw(spot, 1);
-  return picture;
 }
 
 }  // namespace pellucid::harness

@@ -62,15 +62,7 @@ private:
   std::vector<Pixel> pixels_;
 };
 
-// Spots that are bright.
-std::size_t brightOf(const std::vector<Spot>& spots);
-
 // The irradiance times the albedo, if there is any: a result without diffusion and translucency.
 Image litAlbedo(const Capture& capture);
-
-// Frames spots of `image` in a picture of its size, 3 bytes a pixel: yellow around bright ones, cyan around
-// dark ones, and half as bright around spots that are not in `lacked`.
-std::vector<std::uint8_t> markSpots(std::vector<std::uint8_t> picture, const Image& image,
-                                    const std::vector<Spot>& spots, const std::vector<Spot>& lacked);
 
 }  // namespace pellucid::harness

@@ -58,7 +58,7 @@ double Ambient::chordBeside(const Surface& s) const {
   return std::isinf(least) ? *s.chord : std::max(*s.chord, least);
 }
 
-glm::dvec3 Ambient::at(const Surface& s, std::size_t material, bool bodies) const {
+glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
   if (!capture_.environment && capture_.hiddenIrradiance.empty()) return glm::dvec3(0);
   const PellucidMaterial& m = materials_[material];
   const glm::dvec3 front = s.normal.value_or(-s.ray);
@@ -82,7 +82,7 @@ glm::dvec3 Ambient::at(const Surface& s, std::size_t material, bool bodies) cons
   const glm::dvec3 rho(m.reflectance[0], m.reflectance[1], m.reflectance[2]);
   const glm::dvec3 kept = kernels_[material] ? kernels_[material]->slabReflectance(h) : glm::dvec3(1);
   const glm::dvec3 through = transmittance(m, h) * hidden(back);
-  const glm::dvec3 lost = bodies ? glm::dvec3(0) : (1.0 - kept) * rho * visible(front);
+  const glm::dvec3 lost = (1.0 - kept) * rho * visible(front);
   const double seen =
       std::min(3 * std::min(std::abs(glm::dot(front, s.ray)), std::abs(glm::dot(back, s.ray))), 1.0);
   return seen * (0.5 - 0.5 * glm::dot(front, back)) * (through - lost);

@@ -19,8 +19,8 @@ public:
 
   // Exitance besides what the irradiance image makes: T(h) of what arrives at the hidden face, less what the
   // visible face does not return of its own. 0 without a back depth, and without an environment and hidden
-  // irradiance. `material`: from 0. `bodies`: the gather says what the visible face returns.
-  glm::dvec3 at(const Surface& surface, std::size_t material, bool bodies) const;
+  // irradiance. `material`: from 0.
+  glm::dvec3 at(const Surface& surface, std::size_t material) const;
 
   // Irradiance of a face with a unit normal in world space.
   static glm::dvec3 irradiance(const Harmonics& environment, const glm::dvec3& normal);

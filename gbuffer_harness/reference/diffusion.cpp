@@ -16,8 +16,6 @@ namespace {
 constexpr int kIntegrated = 3;
 constexpr int kSampled = 20;
 
-constexpr double kLeastDiscarded = 1e-12;
-
 std::array<Profile, 3> threeChannels(const std::array<std::optional<Profile>, 3>& channels,
                                      const Profile& filler) {
   return {channels[0].value_or(filler), channels[1].value_or(filler), channels[2].value_or(filler)};
@@ -39,22 +37,15 @@ struct Diffusion::Sums {
 };
 
 Diffusion::Diffusion(const Capture& capture, const SurfaceReader& surfaces,
-                     const std::vector<PellucidMaterial>& materials, const DiffusionSettings& settings,
-                     const std::vector<glm::dvec3>& irradiance)
+                     const std::vector<PellucidMaterial>& materials,
+                     const std::vector<glm::dvec3>& irradiance, double discardedEnergy)
     : capture_(capture),
       surfaces_(surfaces),
       irradiance_(irradiance),
       mmPerUnit_(surfaces.millimetersPerUnit()) {
-  if (!(settings.discardedEnergy >= kLeastDiscarded && settings.discardedEnergy < 1))
-    throw InputError("", "discardedEnergy",
-                     std::to_string(settings.discardedEnergy) + " is not in [1e-12, 1)");
-  if (settings.source == ProfileSource::Table && settings.tables.size() != materials.size())
-    throw InputError(
-        "", "profile tables",
-        std::to_string(settings.tables.size()) + " for " + std::to_string(materials.size()) + " materials");
   for (std::size_t i = 0; i < materials.size(); ++i) {
     try {
-      layers_.push_back(makeLayer(i, materials[i], settings));
+      layers_.push_back(makeLayer(i, materials[i], discardedEnergy));
     } catch (const InputError& e) {
       throw InputError(capture.name, "materials[" + std::to_string(i) + "]", e.what());
     }
@@ -62,16 +53,14 @@ Diffusion::Diffusion(const Capture& capture, const SurfaceReader& surfaces,
 }
 
 Diffusion::Layer Diffusion::makeLayer(std::size_t material, const PellucidMaterial& compiled,
-                                      const DiffusionSettings& settings) const {
-  static const ProfileValues kNoTable;
-  const ProfileValues& table = settings.source == ProfileSource::Table ? settings.tables[material] : kNoTable;
+                                      double discardedEnergy) const {
   Layer layer;
   std::array<std::optional<Profile>, 3> channels;
   double radius = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    channels[c] = channelProfile(compiled, static_cast<int>(c), settings.source, table);
+    channels[c] = channelProfile(compiled, static_cast<int>(c));
     layer.diffuses[c] = channels[c].has_value();
-    if (channels[c]) radius = std::max(radius, radiusOfTail(*channels[c], settings.discardedEnergy));
+    if (channels[c]) radius = std::max(radius, radiusOfTail(*channels[c], discardedEnergy));
   }
   const auto any =
       std::find_if(channels.begin(), channels.end(), [](const auto& p) { return p.has_value(); });

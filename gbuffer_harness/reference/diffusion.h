@@ -13,21 +13,16 @@
 
 namespace pellucid::harness::reference {
 
-struct DiffusionSettings {
-  ProfileSource source = ProfileSource::Material;
-  std::vector<ProfileValues> tables;  // one per material; ProfileSource::Table only
-  double discardedEnergy = 1e-5;      // most profile energy that the cut-off radius leaves out, [1e-12, 1)
-};
-
 // Irradiance is constant over a pixel's footprint on its tangent plane. The result at a pixel center x
 // is sum_y E_y W(x, y) / sum_y W(x, y), with W the integral of R(distance in 3-D to x) over the
 // footprint of pixel y; the sum runs over the pixels of the same material within the cut-off radius.
 class Diffusion {
 public:
-  // Keeps a reference to the irradiance, one value per pixel. Throws InputError naming the material at fault.
+  // Keeps a reference to the irradiance, one value per pixel. `discardedEnergy`: the profile energy that the cut-off
+  // radius leaves out at most, [1e-12, 1). Throws InputError naming the material at fault.
   Diffusion(const Capture& capture, const SurfaceReader& surfaces,
-            const std::vector<PellucidMaterial>& materials, const DiffusionSettings& settings,
-            const std::vector<glm::dvec3>& irradiance);
+            const std::vector<PellucidMaterial>& materials, const std::vector<glm::dvec3>& irradiance,
+            double discardedEnergy = 1e-5);
 
   // Channels without a profile and pixels without material or surface come back as they went in.
   // Safe from several threads.
@@ -60,8 +55,7 @@ private:
   };
   struct Sums;
 
-  Layer makeLayer(std::size_t material, const PellucidMaterial& compiled,
-                  const DiffusionSettings& settings) const;
+  Layer makeLayer(std::size_t material, const PellucidMaterial& compiled, double discardedEnergy) const;
   void collect(Layer& layer, std::size_t material) const;
   Window reach(const Layer& layer, const Sample& receiver) const;
   void addRow(const Layer& layer, const Sample& receiver, int x, int y, int row, const Window& window,

@@ -139,7 +139,6 @@ constexpr int kBlock = 16;
 constexpr double kLeastCosine = 0.2;
 // Slope of an exit's own surface across the light within a texel, at most: as of 76 degrees.
 constexpr double kSteepestOwn = 4;
-// What curvature adds to the diffusion, or takes from it, at most.
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
 // A face that turns away from the light by more than 30 degrees is the other face of a thin part.
@@ -207,8 +206,8 @@ std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm
   return outward;
 }
 
-// What faces away cannot be seen, however thin the part is; what faces the camera is seen unless
-// something is clearly in front of it.
+// A face that turns away from the camera cannot be seen, however thin the part is. A face that looks at the
+// camera is seen unless something is clearly in front of it.
 bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, double tolerance,
                         double off) const {
   const glm::dmat4 viewFromWorld = glm::inverse(surfaces_.worldFromView());
@@ -300,15 +299,6 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
       blocks.push_back(std::move(block));
     }
   return blocks;
-}
-
-std::size_t Gather::hiddenTexels() const {
-  std::size_t count = 0;
-  for (const Blocks& blocks : lights_)
-    for (const Block& b : blocks)
-      count += static_cast<std::size_t>(
-          std::count_if(b.texels.begin(), b.texels.end(), [](const Texel& t) { return !t.seen; }));
-  return count;
 }
 
 double Gather::meanCurvature(const Surface& surface, double reach) const {
@@ -510,7 +500,7 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
     s.transmitted *= body.through;
     result.transmitted += s.transmitted;
     if (!diffused_) continue;
-    // What is displaced is the light's own: half of what it brings to the exit and half of what it brings
+    // The displaced light is the light's own: half of its irradiance at the exit and half of its irradiance
     // around.
     const glm::dvec3 own = place.ownIrradiance, seen = s.seenEntering / glm::max(s.seen, glm::dvec3(1e-12));
     const glm::dvec3 around = 0.5 * (own + seen), hidden = glm::min(s.hidden, glm::dvec3(1));

@@ -14,7 +14,7 @@
 
 namespace pellucid::harness::reference {
 
-// What a pixel gets besides its diffused irradiance. RGB.
+// The light of a pixel besides its diffused irradiance. RGB.
 struct Gathered {
   glm::dvec3 transmitted{0};  // exitance of what came through
   // Irradiance that enters hidden from the camera and faces the way the pixel does, less what the lights'
@@ -34,9 +34,6 @@ public:
   // `material`: index into the list. Pixels without a normal see every texel as opposite. Safe from several
   // threads.
   Gathered at(const Surface& surface, std::size_t material) const;
-
-  // Lit texels that the camera does not see, over all lights.
-  std::size_t hiddenTexels() const;
 
 private:
   struct Texel {
@@ -72,7 +69,7 @@ private:
     const std::vector<ShadowView>* views = nullptr;  // of the light's maps
   };
 
-  // Of one of the light's maps; a texel that an earlier one contains counts there.
+  // The texels of one of the light's maps. A texel that an earlier map contains counts there.
   Blocks collect(const Light& light, std::size_t map) const;
   Sums sums(const Blocks& blocks, const Exit& exit, const Place& place) const;
   Place placeOf(std::size_t light, const Exit& exit) const;

@@ -37,53 +37,6 @@ double GaussianProfile::finestScale() const {
   return std::sqrt(*std::min_element(variance.begin(), variance.end()));
 }
 
-TabulatedProfile::TabulatedProfile(std::vector<double> radius, const std::vector<double>& value)
-    : radius_(std::move(radius)) {
-  if (radius_.size() < 2 || radius_.size() != value.size())
-    throw InputError("", "profile table",
-                     "needs two or more radii and as many values, not " + std::to_string(radius_.size()) +
-                         " and " + std::to_string(value.size()));
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const bool ascends = i == 0 ? radius_[0] >= 0 : radius_[i] > radius_[i - 1];
-    if (!ascends || !std::isfinite(radius_[i]) || !(value[i] >= 0) || !std::isfinite(value[i]))
-      throw InputError("", "profile table",
-                       "entry " + std::to_string(i) + ": radius " + std::to_string(radius_[i]) + ", value " +
-                           std::to_string(value[i]) + " (radii ascend from 0, values are finite and >= 0)");
-    ring_.push_back(2 * std::numbers::pi * radius_[i] * value[i]);
-  }
-  if (radius_[0] > 0) {
-    radius_.insert(radius_.begin(), 0);
-    ring_.insert(ring_.begin(), 0);
-  }
-  cumulative_.push_back(0);
-  for (std::size_t i = 1; i < radius_.size(); ++i)
-    cumulative_.push_back(cumulative_.back() +
-                          0.5 * (ring_[i] + ring_[i - 1]) * (radius_[i] - radius_[i - 1]));
-  const double total = cumulative_.back();
-  if (!(total > 0)) throw InputError("", "profile table", "its integral over the plane is 0");
-  for (double& r : ring_) r /= total;
-  for (double& c : cumulative_) c /= total;
-}
-
-double TabulatedProfile::cumulative(double r) const {
-  if (r >= radius_.back()) return 1;
-  const auto above = std::upper_bound(radius_.begin(), radius_.end(), r);
-  const std::size_t i = static_cast<std::size_t>(above - radius_.begin()) - 1;
-  return cumulative_[i] + 0.5 * (ring_[i] + ringDensity(r)) * (r - radius_[i]);
-}
-
-double TabulatedProfile::ringDensity(double r) const {
-  if (r >= radius_.back()) return 0;
-  const auto above = std::upper_bound(radius_.begin(), radius_.end(), r);
-  const std::size_t i = static_cast<std::size_t>(above - radius_.begin()) - 1;
-  return std::lerp(ring_[i], ring_[i + 1], (r - radius_[i]) / (radius_[i + 1] - radius_[i]));
-}
-
-double TabulatedProfile::finestScale() const {
-  // Kinks at the radii limit the cubic interpolation: several cells between most of them.
-  return radius_.back() / double(radius_.size() * radius_.size());
-}
-
 double cumulative(const Profile& p, double r) {
   return std::visit([&](const auto& profile) { return profile.cumulative(r); }, p);
 }
@@ -174,26 +127,10 @@ std::optional<Profile> gaussians(const PellucidMaterial& m, int channel) {
   return p;
 }
 
-Profile tabulated(const ProfileValues& table, int channel) {
-  std::vector<double> value;
-  for (const auto& rgb : table.value) value.push_back(rgb[static_cast<std::size_t>(channel)]);
-  return TabulatedProfile(table.radius, value);
-}
-
 }  // namespace
 
-std::optional<Profile> channelProfile(const PellucidMaterial& m, int channel, ProfileSource source,
-                                      const ProfileValues& table) {
-  switch (source) {
-    case ProfileSource::Burley:
-      return burley(m, channel);
-    case ProfileSource::Gaussians:
-      return gaussians(m, channel);
-    case ProfileSource::Table:
-      return tabulated(table, channel);
-    default:
-      return m.burleyDistance[channel] != 0 ? burley(m, channel) : gaussians(m, channel);
-  }
+std::optional<Profile> channelProfile(const PellucidMaterial& m, int channel) {
+  return m.burleyDistance[channel] != 0 ? burley(m, channel) : gaussians(m, channel);
 }
 
 namespace {

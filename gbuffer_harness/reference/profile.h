@@ -37,22 +37,7 @@ struct GaussianProfile {
   double finestScale() const;
 };
 
-// R measured at ascending radii; r R(r) is linear in between, R constant below the first radius and 0
-// above the last. Scaled to integral 1.
-class TabulatedProfile {
-public:
-  // Throws InputError unless radii ascend from >= 0, values are finite and >= 0, and both have at
-  // least two entries and a positive integral.
-  TabulatedProfile(std::vector<double> radius, const std::vector<double>& value);
-  double cumulative(double r) const;
-  double ringDensity(double r) const;
-  double finestScale() const;
-
-private:
-  std::vector<double> radius_, ring_, cumulative_;  // radius_[0] = 0
-};
-
-using Profile = std::variant<BurleyProfile, GaussianProfile, TabulatedProfile>;
+using Profile = std::variant<BurleyProfile, GaussianProfile>;
 
 double cumulative(const Profile& p, double r);
 double ringDensity(const Profile& p, double r);
@@ -99,24 +84,9 @@ private:
   std::vector<Cubic> ring_, cumulative_;
 };
 
-// Where the R(r) of a compiled material comes from.
-enum class ProfileSource {
-  Material,  // Burley in channels with burleyDistance > 0, else the Gaussians
-  Burley,    // burleyDistance; 0: the channel does not diffuse
-  Gaussians,
-  Table  // ProfileValues
-};
-
-// R(r) measured at `radius` (mm), RGB per radius; any scale.
-struct ProfileValues {
-  std::vector<double> radius;
-  std::vector<std::array<double, 3>> value;
-};
-
-// One channel's profile; nothing if the channel does not diffuse. `table` is read for
-// ProfileSource::Table only. Throws InputError naming the field for values no profile can have.
-std::optional<Profile> channelProfile(const PellucidMaterial& material, int channel, ProfileSource source,
-                                      const ProfileValues& table);
+// One channel's profile: Burley's where the material has a distance, else its Gaussians; nothing if the channel does not
+// diffuse. Throws InputError naming the field for values no profile can have.
+std::optional<Profile> channelProfile(const PellucidMaterial& material, int channel);
 
 // Parallelogram { center + a x + b y : -1 <= a, b <= 1 }; center relative to the receiving point.
 struct Parallelogram {

@@ -11,14 +11,14 @@
 #include "common/parallel.h"
 #include "common/progress.h"
 #include "reference/ambient.h"
-#include "reference/gather.h"
 #include "reference/surface.h"
 #include "reference/translucency.h"
 
 namespace pellucid::harness::reference {
 namespace {
 
-double sanitized(float e, double brightest) { return e > 0 ? std::min(double(e), brightest) : 0.0; }
+// As halves hold it.
+double sanitized(float e) { return e > 0 ? std::min(double(e), 65504.0) : 0.0; }
 
 glm::dvec3 dividedOrZero(const glm::dvec3& a, const glm::dvec3& b) {
   const auto divide = [](double n, double d) { return d > 0 ? n / d : 0.0; };
@@ -78,11 +78,13 @@ public:
       case PELLUCID_DEBUG_NONE:
         return diffused();
       case PELLUCID_DEBUG_IRRADIANCE:
-        addIrradiance([](const PellucidMaterial&) { return true; });
-        return {toImage(values_), 0, 0};
+        addIrradiance();
+        return {toImage(values_)};
       default:
-        gatherDebugView();
-        return {toImage(values_), 0, 0};
+        forEachWanted("debug view", [&](int x, int y, std::size_t i) {
+          values_[i] = debugColor(transmission(x, y, i), settings_.debugView);
+        });
+        return {toImage(values_)};
     }
   }
 
@@ -96,7 +98,7 @@ private:
   template <typename Fn>
   void forEachPixel(const char* label, const Fn& fn) const {
     Progress progress(label, static_cast<std::uint64_t>(capture_.height));
-    parallelRows(capture_.height, settings_.jobs, [&](int y) {
+    parallelRows(capture_.height, 0, [&](int y) {
       for (int x = 0; x < capture_.width; ++x)
         if (capture_.material[index(x, y)] != 0) fn(x, y, index(x, y));
       progress.advance();
@@ -121,13 +123,12 @@ private:
     return surface ? translucency_.at(*surface, material(i), capture_.material[i]) : Transmission{};
   }
 
-  // E, + transmitted / rho where through(material).
-  template <class Through>
-  void addIrradiance(Through&& through) {
+  // E + transmitted / rho.
+  void addIrradiance() {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
       const float* e = capture_.irradiance.at(x, y);
-      for (int c = 0; c < 3; ++c) values_[i][c] = sanitized(e[c], settings_.brightest);
-      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY && through(material(i)))
+      for (int c = 0; c < 3; ++c) values_[i][c] = sanitized(e[c]);
+      if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)
         values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
   }
@@ -138,50 +139,19 @@ private:
     glm::dvec3 exitance = transmission(x, y, i).transmitted;
     if (const std::optional<Surface> surface = surfaces_.at(x, y);
         ambient_ && surface && marks_.count(i) == 0)
-      exitance += ambient_->at(*surface, capture_.material[i] - 1u,
-                               settings_.translucency.gatherSamples > 0 &&
-                                   settings_.features & PELLUCID_FEATURE_DIFFUSION);
+      exitance += ambient_->at(*surface, capture_.material[i] - 1u);
     return exitance / glm::dvec3(rho[0], rho[1], rho[2]);
   }
 
-  // Adds to the diffused irradiance what all texels of the shadow maps bring, and the lights without one.
-  void gather(std::vector<glm::dvec3>& output) const {
-    const auto& f = settings_.translucency.transmittanceFilter;
-    const bool spreads = settings_.features & PELLUCID_FEATURE_DIFFUSION;
-    const Gather all(capture_, surfaces_, materials_, spreads);
-    forEachWanted("gather", [&](int x, int y, std::size_t i) {
-      const std::optional<Surface> surface = surfaces_.at(x, y);
-      if (!surface || marks_.count(i) != 0 || material(i).thinWalled) return;
-      const Gathered g = all.at(*surface, capture_.material[i] - 1u);
-      const float* rho = material(i).reflectance;
-      output[i] = g.factor * output[i] + g.returned;
-      output[i] += g.transmitted * glm::dvec3(f[0], f[1], f[2]) / glm::dvec3(rho[0], rho[1], rho[2]) +
-                   transmitted(x, y, i);
-      output[i] = glm::max(output[i], glm::dvec3(0));
-    });
-  }
-
-  void gatherDebugView() {
-    forEachWanted("debug view", [&](int x, int y, std::size_t i) {
-      values_[i] = debugColor(transmission(x, y, i), settings_.debugView);
-    });
-  }
-
-  // What comes through is diffused with the irradiance; gathered light has already spread, so it comes after.
-  // Thin walls are not gathered.
+  // Light that comes through is diffused with the irradiance.
   Result diffused() {
-    const bool gathers =
-        settings_.translucency.gatherSamples > 0 && settings_.features & PELLUCID_FEATURE_TRANSLUCENCY;
-    addIrradiance([gathers](const PellucidMaterial& m) { return !gathers || m.thinWalled != 0; });
+    addIrradiance();
     Result result;
     std::vector<glm::dvec3> output = values_;
     if (settings_.features & PELLUCID_FEATURE_DIFFUSION) {
-      const Diffusion diffusion(capture_, surfaces_, materials_, settings_.diffusion, values_);
+      const Diffusion diffusion(capture_, surfaces_, materials_, values_);
       forEachWanted("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
-      result.radius = diffusion.radius();
-      result.discardedEnergy = settings_.diffusion.discardedEnergy;
     }
-    if (gathers) gather(output);
     if (!capture_.albedo.empty())
       forEachPixel("albedo", [&](int x, int y, std::size_t i) {
         const float* albedo = capture_.albedo.at(x, y);

@@ -17,24 +17,18 @@ struct Settings {
   TranslucencySettings translucency;
   bool ambient = false;  // light from all around comes through thin parts
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
-  DiffusionSettings diffusion;
-  double brightest =
-      65504;     // irradiance above counts as this: what halves hold, over the frame's preExposure
-  int jobs = 0;  // threads; 0: as many as the machine has
   // One value per pixel: the output is computed where it is not 0, and 0 elsewhere. Empty: everywhere.
   std::vector<std::uint8_t> wanted;
 };
 
 struct Result {
-  Image image;                 // RGB, see compute()
-  double radius = 0;           // cut-off of the diffusion, mm; 0 when nothing was diffused
-  double discardedEnergy = 0;  // profile energy outside of the radius, at most
+  Image image;  // RGB, see compute()
 };
 
 // The output of the pass, albedo * diffused(E + transmitted / rho), or the debug view; computed in
 // double, rounded to float at the end. `materials` belong to the capture's in order. Pixels of
 // material 0, which the pass leaves alone, are 0. Irradiance that is NaN or negative counts as 0.
-// gatherSamples > 0 gathers over all texels, however many samples that asks for. A material pixel without
+// Light is not gathered: a pixel takes one thickness, whatever gatherSamples asks for. A material pixel without
 // front depth only gets its albedo. Debug views have the layouts of PellucidDebugView, TRANSMITTANCE and
 // OCCLUSION per channel: transmitted / unoccluded and unoccluded / arriving irradiance, 0 where the divisor
 // is 0. Throws InputError naming the capture, field and value.

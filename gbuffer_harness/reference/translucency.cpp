@@ -269,10 +269,6 @@ Translucency::LightPath Translucency::thinWallPath(std::size_t light, const Rece
   return path;
 }
 
-bool Translucency::isGathered(std::size_t light) const {
-  return settings_.gatherSamples > 0 && !shadows_[light].empty() && !holdsBackFaces(capture_.lights[light]);
-}
-
 std::optional<double> Translucency::firstLightDistance(const Receiver& r) const {
   for (std::size_t i = 0; i < shadows_.size(); ++i) {
     if (holdsBackFaces(capture_.lights[i])) continue;
@@ -298,7 +294,6 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
   if (receiver.chord) t.cameraThickness = *receiver.chord * mmPerUnit;
   if (const auto distance = firstLightDistance(receiver)) t.lightThickness = *distance * mmPerUnit;
   for (std::size_t i = 0; i < capture_.lights.size(); ++i) {
-    if (!material.thinWalled && isGathered(i)) continue;  // reference/gather.h
     const LightPath path = material.thinWalled ? thinWallPath(i, receiver)
                            : usesLightSpace(i) ? lightSpacePath(i, receiver)
                                                : cameraSpacePath(i, receiver);

@@ -17,7 +17,7 @@ namespace pellucid::harness::reference {
 // settings.minimumDot for models without a table. Throws InputError when the table does not fit the model.
 double minimumDot(const TranslucencySettings& settings, const Light& light);
 
-// What one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
+// Light that one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.
 struct Transmission {
   std::optional<double> cameraThickness;  // ray chord between front and back depth
   std::optional<double> lightThickness;   // first light with a map that contains the pixel
@@ -64,7 +64,6 @@ private:
   LightPath thinWallPath(std::size_t light, const Receiver& r) const;
   // Part of the light that no surface but the sheet itself holds back.
   double unblockedPart(std::size_t light, const Receiver& r, double facing) const;
-  bool isGathered(std::size_t light) const;
   std::optional<double> firstLightDistance(const Receiver& r) const;  // scene units
   bool usesLightSpace(std::size_t light) const;
   // In the first of the light's maps that contains the point.

@@ -93,7 +93,7 @@ float nearestLine(const PellucidMaterial& m, uint32_t channel) {
   return static_cast<float>(bestLength);
 }
 
-// What the table of settings cannot copy, because the frame holds it relative to its origin or as an array.
+// Options that the table of settings cannot copy: the frame holds them relative to its origin or as an array.
 void addThesisOptions(const TranslucencySettings& t, const Origin& origin, FrameData& data) {
   PellucidThesisOptions& o = data.thesis;
   data.minimumDotTable = t.minimumDotTable;

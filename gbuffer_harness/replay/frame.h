@@ -52,7 +52,7 @@ struct FrameShape {
 
 FrameShape shapeOf(const Capture& capture);
 
-// What pellucidGetImageNeeds lists at most: transients and a history.
+// The most images that pellucidGetImageNeeds lists: transients and a history.
 inline constexpr uint32_t kMaxImageNeeds = PELLUCID_MAX_TRANSIENTS + 1;
 
 // The frame that a replay of the capture records, complete but for its views: each image has a placeholder,

@@ -72,16 +72,6 @@ public:
     }
   }
 
-  // Bytes of 0xFF, or of 0 to a little more than what indices may be.
-  void poison(std::uint64_t seed, std::uint32_t materials) const {
-    if (!outputIsIrradiance_) output_->clear(0xFF);
-    for (GpuImage* image : transients_) {
-      if (seed % 2 == 0)
-        image->clear(0xFF);
-      else
-        image->fill(seed, std::min(materials + 1, 255u));
-    }
-  }
   void fillGarbage(std::uint64_t seed) const {
     if (!outputIsIrradiance_) output_->clear(0xFF);
     constexpr std::uint8_t kBytes[] = {0x00, 0xFF, 0x7B};  // 0, NaN, large finite numbers in both formats
@@ -300,10 +290,7 @@ Image FrameRun::output(const VkRect2D& rect) const { return images_->output().do
 Image FrameRun::irradiance() const { return images_->irradiance(); }
 
 void FrameRun::fillGarbage(std::uint64_t seed) const {
-  if (device_.guarded())
-    images_->poison(seed, data_.frame.materialCount);
-  else
-    images_->fillGarbage(seed);
+  images_->fillGarbage(seed);
   std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
   writeConstants();
 }
@@ -367,53 +354,6 @@ ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMat
   for (uint32_t i = 0; i < count; ++i)
     result.times.push_back({result.plan.dispatches[i].name, median(times[i])});
   return result;
-}
-
-ViewTimes Replayer::timeViews(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                              const ReplaySettings& settings, uint32_t views, uint32_t timedFrames) {
-  const Context& context = contextFor(capture);
-  const auto inputs = std::make_shared<const InputImages>(device_, capture, settings);
-  std::vector<std::unique_ptr<FrameRun>> owned;
-  std::vector<const FrameRun*> runs;
-  for (uint32_t i = 0; i < views; ++i) {
-    owned.push_back(settings.aliasOutput
-                        ? std::make_unique<FrameRun>(device_, context, capture, materials, settings)
-                        : std::make_unique<FrameRun>(device_, context, capture, materials, settings, inputs));
-    runs.push_back(owned.back().get());
-  }
-  const Timestamps timestamps(device_, 2);
-  const auto time = [&](bool together) {
-    for (const FrameRun* run : runs) run->restoreIrradiance(capture);
-    device_.run([&](VkCommandBuffer commandBuffer) {
-      timestamps.reset(commandBuffer);
-      timestamps.mark(commandBuffer, 0);
-      if (together)
-        FrameRun::recordTogether(commandBuffer, runs);
-      else
-        for (const FrameRun* run : runs) run->record(commandBuffer);
-      timestamps.mark(commandBuffer, 1);
-    });
-    return timestamps.intervals()[0];
-  };
-  // First recordings, in which drivers may still compile shaders.
-  time(false);
-  std::vector<Image> expected;
-  for (const FrameRun* run : runs) {
-    expected.push_back(run->output());
-    if (!settings.aliasOutput) run->uploadOutput(Image(capture.width, capture.height, 4));  // as it was
-  }
-  time(true);
-  for (uint32_t i = 0; i < views; ++i) {
-    const std::vector<float> output = runs[i]->output().data;
-    if (std::memcmp(output.data(), expected[i].data.data(), output.size() * sizeof output[0]) != 0)
-      throw DeviceError("views[" + std::to_string(i) + "] recorded with others has other bits than alone");
-  }
-  std::vector<double> together, apart;
-  for (uint32_t frame = 0; frame < timedFrames; ++frame) {
-    together.push_back(time(true));
-    apart.push_back(time(false));
-  }
-  return {median(together), median(apart)};
 }
 
 }  // namespace pellucid::harness

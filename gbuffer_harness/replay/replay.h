@@ -99,8 +99,7 @@ public:
   void restoreIrradiance(const Capture& capture) const;
 
   // Other bits where a recording must not depend on them: in transients, the constants' memory between
-  // constants, and an output that is not the irradiance, which becomes 0xFF bytes: NaN in both formats. On
-  // guarded devices transients hold 0xFF bytes or what looks like indices, by turns.
+  // constants, and an output that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
   void fillGarbage(std::uint64_t seed) const;
 
   // Content of an output that is not the irradiance before the first recording.
@@ -146,12 +145,6 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
-// Microseconds of all views, medians of GPU timestamps.
-struct ViewTimes {
-  double together;  // in one recording
-  double apart;     // in one each, one after the other in one command buffer
-};
-
 // Frames of one size, each of which goes on with the history of the one before, as settings.reuse says.
 class ReplaySequence {
 public:
@@ -179,11 +172,6 @@ public:
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                    const ReplaySettings& settings, uint32_t timedFrames = 0,
                    const std::function<void(const FrameRun&)>& look = {});
-
-  // `views` copies of the frame, which share inputs that are not written. Throws DeviceError where the
-  // copies' bits are not the same either way.
-  ViewTimes timeViews(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                      const ReplaySettings& settings, uint32_t views, uint32_t timedFrames);
 
 private:
   Device& device_;

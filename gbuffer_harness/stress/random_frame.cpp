@@ -71,7 +71,7 @@ float nearestDistance(const StressFrame& frame, const View& view) {
   return nearest < 1e9 ? static_cast<float>(nearest * 0.999) : 0;
 }
 
-void randomSettings(Random& random, const View& view, const FrameLimits& limits, StressFrame& frame) {
+void randomSettings(Random& random, const View& view, StressFrame& frame) {
   ReplaySettings& s = frame.settings;
   const double kind = random.real();
   s.features = kind < 0.55   ? PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION
@@ -80,7 +80,6 @@ void randomSettings(Random& random, const View& view, const FrameLimits& limits,
                              : 0;
   randomTranslucency(random, frame.wild, frame, s.translucency);
   s.outputFormat = random.of({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT});
-  if (limits.gatherSamples) s.translucency.gatherSamples = *limits.gatherSamples;
   if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
   s.indirectDispatches = random.chance(0.6);
@@ -171,7 +170,7 @@ StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialP
   }
   addRandomImages(random, frame.wild, view, count, c);
   addRandomLights(random, frame.wild, view, c);
-  randomSettings(random, view, limits, frame);
+  randomSettings(random, view, frame);
   markPixels(random, frame);
   return frame;
 }

@@ -13,8 +13,8 @@
 
 namespace pellucid::harness::stress {
 
-// SplitMix64 (Steele, Lea and Flood 2014): numbers that are the same on every machine, which those of the
-// standard library's distributions are not.
+// SplitMix64 (Steele, Lea and Flood 2014). Its numbers are the same on every machine; the distributions of
+// the standard library differ.
 class Random {
 public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -65,7 +65,6 @@ private:
 };
 
 struct FrameLimits {
-  std::optional<std::uint32_t> gatherSamples;  // of all frames; none: any
   int pixels = 65536;                          // of the largest frame; few frames are above 64 x 64
   int side = 16384;  // of the longest frame: what images of any Vulkan device may have is less or more
 };

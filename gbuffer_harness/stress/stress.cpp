@@ -48,11 +48,9 @@ public:
     const StressFrame frame = randomFrame(options_.seed, index, pool_, limits_);
     std::vector<Violation> violations;
     const std::size_t messages = renderer_.device().validationMessages().size();
-    std::optional<Image> output;
     try {
       Subject subject(renderer_, frame);
       count(result.checks[0], frame, {}, 0);
-      output = subject.output;
       std::size_t i = 1;
       for (const Check& check : checks()) {
         ++i;
@@ -68,7 +66,6 @@ public:
                 frame.wild ? std::nullopt : std::optional<double>(0)))
         violations.push_back({kAccepted, {1, -1, -1, -1}, refused.what()});
     }
-    if (output && events_.rendered) events_.rendered(frame, *output);  // may throw what is no refusal
     const std::vector<std::string> said = renderer_.device().validationMessages();
     const Worst worst{static_cast<double>(said.size() - messages), -1, -1, -1};
     if (options_.validate && count(result.checks[1], frame, worst, 0))
@@ -114,7 +111,6 @@ StressResult runStress(Renderer& renderer, const StressOptions& options, const S
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   for (std::uint64_t i = 0; options.frames ? i < *options.frames : seconds() < options.seconds; ++i) {
-    if (events.started) events.started(options.first + i);
     run.runFrame(options.first + i);
     run.result.seconds = seconds();
     if (events.progressed) events.progressed(run.result);

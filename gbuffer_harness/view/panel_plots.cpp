@@ -67,7 +67,7 @@ Curves profileCurves(const PellucidMaterial& material, int points) {
   double end = 0;
   for (int c = 0; c < 3; ++c) {
     std::optional<reference::Profile>& profile = profiles[static_cast<std::size_t>(c)];
-    profile = reference::channelProfile(material, c, reference::ProfileSource::Material, {});
+    profile = reference::channelProfile(material, c);
     if (profile) end = std::max(end, reference::radiusOfTail(*profile, kTail));
   }
   if (end > 0) curves.end = end;

@@ -1,4 +1,4 @@
-// Files of others: EXR, manifests, glTF, Blender's scenes.
+// Files of others: EXR, manifests, glTF.
 #include <filesystem>
 
 #include "capture/exr.h"
@@ -98,12 +98,6 @@ bool fuzzManifest(std::span<const uint8_t> bytes) {
   static const Folder folder(writeSampleFiles);
   const std::filesystem::path path = write(folder / "m.json", bytes);
   return accepts([&] { readCapture(path); });
-}
-
-bool fuzzBlender(std::span<const uint8_t> bytes) {
-  static const Folder folder(writeBlenderFiles);
-  write(folder / "render.json", bytes);
-  return accepts([&] { readCapture(folder / "render.exr", ManifestPreset::Blender); });
 }
 
 bool fuzzGltf(std::span<const uint8_t> bytes) {

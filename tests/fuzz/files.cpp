@@ -15,25 +15,6 @@ namespace pellucid::fuzz {
 
 using namespace pellucid::harness;
 
-nlohmann::json writeBlenderFiles(const std::filesystem::path& folder) {
-  const std::vector<std::string> names = {"View.Depth.Z",   "View.Normal.X",  "View.Normal.Y",
-                                          "View.Normal.Z",  "View.DiffDir.R", "View.DiffDir.G",
-                                          "View.DiffDir.B", "View.DiffCol.R", "View.DiffCol.G",
-                                          "View.DiffCol.B", "View.IndexMA.X"};
-  writeExr(folder / "render.exr", Image(6, 4, static_cast<int>(names.size()), 1), names);
-  writeExr(folder / "back.exr", Image(6, 4, 1, 2), {"View.Depth.Z"});
-  return nlohmann::json::parse(R"({
-      "blender": 1, "metersPerUnit": 0.5, "viewLayer": "View", "backDepth": "back.exr",
-      "camera": {"matrixWorld": [[2,0,0,1], [0,2,0,2], [0,0,2,5], [0,0,0,1]],
-                 "projection": [[2,0,0.2,0], [0,4,-0.1,0], [0,0,-1.002,-0.2002], [0,0,-1,0]]},
-      "lights": [
-        {"name": "Sun", "type": "SUN", "color": [0,0,1], "energy": 3,
-         "matrixWorld": [[1,0,0,0], [0,1,0,0], [0,0,1,9], [0,0,0,1]]},
-        {"name": "Spot", "type": "SPOT", "color": [1,1,1], "energy": 100, "spotSize": 0.8, "spotBlend": 0.25,
-         "matrixWorld": [[0,0,1,7], [0,1,0,8], [-1,0,0,9], [0,0,0,1]]}],
-      "materials": [{"passIndex": 1, "material": {"preset": "skin1"}}]})");
-}
-
 std::string soundCapture() {
   const TemporaryDirectory folder;
   writeCapture(sampleCapture(), folder / "c.exr");

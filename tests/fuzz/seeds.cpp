@@ -142,17 +142,6 @@ void manifestSeeds(Damage& damage, const Use& use) {
   damage.setValues(sound);
 }
 
-void blenderSeeds(Damage& damage, const Use& use) {
-  const TemporaryDirectory folder;
-  const json sound = writeBlenderFiles(folder);
-  const std::string text = sound.dump();
-  use(text);
-  damage.cut(text, 50);
-  damage.setCharacters(text, 200);
-  use(std::string(1000000, '['));
-  damage.setValues(sound);
-}
-
 void gltfSeeds(Damage& damage, const Use& use) {
   const std::string sound = soundGlb();
   use(sound);
@@ -199,8 +188,6 @@ void forEachSeed(const std::string& target, const Use& use) {
     exrSeeds(damage, use);
   else if (target == "manifest")
     manifestSeeds(damage, use);
-  else if (target == "blender")
-    blenderSeeds(damage, use);
   else if (target == "gltf")
     gltfSeeds(damage, use);
   else if (target == "frame")

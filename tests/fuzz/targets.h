@@ -24,7 +24,6 @@ bool fuzzFrame(std::span<const uint8_t> bytes);     // edits of a frame's struct
 bool fuzzExr(std::span<const uint8_t> bytes);       // an EXR file, as image and as capture
 bool fuzzManifest(std::span<const uint8_t> bytes);  // a capture's JSON manifest, beside sound EXR files
 bool fuzzGltf(std::span<const uint8_t> bytes);      // a .glb or .gltf file
-bool fuzzBlender(std::span<const uint8_t> bytes);   // the JSON of tools/blender_export.py, beside a sound EXR
 
 struct Target {
   const char* name;
@@ -33,8 +32,7 @@ struct Target {
 inline constexpr Target kTargets[] = {{"frame", fuzzFrame},
                                       {"exr", fuzzExr},
                                       {"manifest", fuzzManifest},
-                                      {"gltf", fuzzGltf},
-                                      {"blender", fuzzBlender}};
+                                      {"gltf", fuzzGltf}};
 
 // Small inputs, most of them broken, in an order and with contents that never change. The first is sound.
 void forEachSeed(const std::string& target, const std::function<void(const std::string&)>& use);

@@ -34,13 +34,7 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "replay " + capture + " --debug thickness -o " + path("d.exr"),
          "median of 3 frames after a first one");
   EXPECT_TRUE(fs::exists(path("d.png")));
-  const Outcome thesis = run("replay " + capture + " --mode thesis --repeat 1 --views 2 -o " + again);
-  for (const char* words : {"median of 1 frame after", "2 views: "})
-    EXPECT_NE(thesis.text.find(words), std::string::npos) << thesis.text;
-  expect(0, "replay " + capture + " --mode thesis --set alias=1 --repeat 1 --views 3 -o " + again,
-         "3 views: ");
-  expect(0, "reference " + capture + " -o " + again, "wrote");
-  expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
+  expect(0, "replay " + capture + " --mode thesis --repeat 1 -o " + again, "median of 1 frame after");
 }
 
 // A table, and a picture of 6 x 4 blocks; the EXR holds the result.
@@ -182,15 +176,13 @@ TEST_F(Cli, SequenceUsage) {
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --triptych t.png", "--triptych");
   expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2",
          "--repeat times one capture, not a sequence");
-  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --views 2", "--views times one capture, not a sequence");
-  expect(2, "replay in.exr --views 2 --repeat 0", "--views times frames, and --repeat is 0");
   expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
   expect(2, "capture --procedural ear --orbit -o x.exr", "--orbit: needs --turntable");
   expect(2, "capture --procedural ear --point-maps 6 -o x.exr", "--point-maps: needs a model");
   expect(2, "capture --procedural ear --material skin=marble -o x.exr", "have no names");
   expect(3, "capture --procedural ear --material *=granite -o x.exr", "granite");
   expect(2, "capture x.glb --seed 3 -o x.exr", "--seed: needs --procedural");
-  for (const char* command : {"capture --procedural ear", "replay x.exr", "reference x.exr"})
+  for (const char* command : {"capture --procedural ear", "replay x.exr"})
     expect(2, std::string(command) + " -o x.png", "\"x.png\" is written as EXR");
   expect(3, "capture --procedural slab --turntable 3 -o " + path("x.#.exr"), "scene \"slab\": has no end");
 }
@@ -198,37 +190,7 @@ TEST_F(Cli, SequenceUsage) {
 TEST_F(Cli, Stress) {
   expect(2, "stress --only nothing", "\"nothing\" is not one of finite, not-negative");
   expect(2, "stress --frames 2 --seconds 2", "excludes");
-  const std::string run = "stress --frames 2 --seed 6 --pixels 256 --only finite";
-  expect(0, run + " --json " + path("s.json") + " --results " + path("r.bin"), "seed 6, frames 0 to 1, ");
-  EXPECT_NE(bytes("s.json").find("\"violations\": 0"), std::string::npos);
-  expect(0, run + " --compare-with " + path("r.bin"), "same bits");
-  expect(3, "stress --frames 1 --seed 7 --pixels 256 --compare-with " + path("r.bin"),
-         "r.bin: has frame 0 of seed 6");
-  expect(3, run + " --compare-with " + path("s.json"), "s.json: is no file of stress results");
-}
-
-// `before` of a command for one driver alone.
-std::string onDriver(const fs::path& icd) { return "export VK_DRIVER_FILES=" + icd.string() + ";"; }
-
-TEST_F(Cli, GuardedStress) {
-  const fs::path swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";  // as ./run driver has it
-  if (!fs::exists(swiftShader))
-    GTEST_SKIP() << swiftShader << " is not there: ./run driver swiftshader installs it";
-  const Outcome outcome =
-      run("stress --guarded --frames 2 --seed 1 --pixels 1024 --only finite", onDriver(swiftShader));
-  EXPECT_EQ(outcome.code, 0) << outcome.text;
-  for (const char* part : {"SwiftShader", "seed 1, frames 0 to 1"})
-    EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
-}
-
-// RADV for a card that is not there has no VK_EXT_external_memory_host.
-TEST_F(Cli, GuardedStressNamesTheExtensionThatADeviceLacks) {
-  const fs::path radv = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
-  const std::string before = onDriver(radv) + "export RADV_FORCE_FAMILY=navi21;";
-  if (!fs::exists(radv)) GTEST_SKIP() << radv << " is not there";
-  const Outcome outcome = run("stress --guarded --frames 1", before);
-  EXPECT_EQ(outcome.code, 4) << outcome.text;
-  EXPECT_NE(outcome.text.find("VK_EXT_external_memory_host is missing"), std::string::npos) << outcome.text;
+  expect(0, "stress --frames 2 --seed 6 --pixels 256 --only finite", "seed 6, frames 0 to 1, ");
 }
 
 // Frames that found faults which are mended: without the fine filter a pixel at an edge counted less than 0.

@@ -27,7 +27,7 @@ const MaterialPool& pool() {
   return shared;
 }
 
-FrameLimits small() { return {std::nullopt, 1024, 1024}; }
+FrameLimits small() { return {1024, 1024}; }
 
 std::string bytesOf(const std::vector<float>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
@@ -206,7 +206,7 @@ TEST_F(Stress, EveryCheckFindsAFault) {
   std::set<std::string> missing;
   for (const Check& check : checks()) missing.insert(check.name);
   for (std::uint64_t i = 0; i < 400 && !missing.empty(); i += 2) {
-    const StressFrame frame = randomFrame(11, i, pool(), {std::nullopt, 256, 256});
+    const StressFrame frame = randomFrame(11, i, pool(), {256, 256});
     if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
     Damaging& r = renderer();
     Subject subject(r, frame);
@@ -259,7 +259,7 @@ TEST_F(Stress, ShortRunHolds) {
   StressOptions options;
   options.seed = 40;
   options.frames = 10;
-  options.limits = {std::nullopt, 2048, 2048};
+  options.limits = {2048, 2048};
   options.validate = true;
   StressEvents events;
   events.violated = [](const StressFrame& frame, const std::vector<Violation>& violations) {

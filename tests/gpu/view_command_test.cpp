@@ -121,7 +121,7 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
   EXPECT_NE(answers.find("one,spot,1,1,1,"), std::string::npos) << answers;
   EXPECT_NE(answers.find("two,spot,0.7,0.2,0.15,"), std::string::npos) << answers;
   expect(0, "perception " + path("answers.csv"), "2 participants");
-  expect(0, "perception " + path("answers.csv") + " --json", "\"green_blue\"");
+  expect(0, "perception " + path("answers.csv"), "green against blue");
   std::ofstream(path("answers.csv"), std::ios::app) << "three,spot,1,1,1,2\n";
   expect(3, "perception " + path("answers.csv"), "\"three\" has not answered scene \"directional\"");
 }

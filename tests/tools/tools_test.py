@@ -4,6 +4,7 @@
 """
 import importlib
 import json
+import math
 import os
 import subprocess
 import sys
@@ -165,38 +166,72 @@ class RenderDoc(unittest.TestCase):
 
 
 class Blender(unittest.TestCase):
-    def test_record_is_complete(self):
-        script = importlib.import_module("blender_export")
+    def setUp(self):
+        self.script = importlib.import_module("blender_export")
 
-        def thing(**attributes):
-            made = stand_in(hide_render=False, matrix_world=IDENTITY, **attributes)
+        def thing(matrix_world, **attributes):
+            made = stand_in(hide_render=False, matrix_world=matrix_world, **attributes)
             made.evaluated_get = lambda depsgraph: made
             return made
 
-        spot = stand_in(type="SPOT", color=(1, 1, 1), energy=5.0, spot_size=0.8, spot_blend=0.1)
-        area = stand_in(type="AREA", color=(1, 1, 1), energy=5.0)
-        camera = thing(type="CAMERA", name="Camera",
-                       calc_matrix_camera=lambda depsgraph, x, y, scale_x, scale_y: IDENTITY)
-        class Material(dict):
-            pass_index = 3
+        def material(index, preset):
+            made = stand_in(pass_index=index)
+            made.get = lambda key, default: preset or default
+            return made
 
+        spot = stand_in(type="SPOT", color=(1, 1, 1), energy=100.0, spot_size=0.8, spot_blend=0.25)
+        sun = stand_in(type="SUN", color=(0, 0, 1), energy=3.0)
+        area = stand_in(type="AREA", color=(1, 1, 1), energy=5.0)
+        # Of calc_matrix_camera(): OpenGL, here with a shift and clip distances 0.1 and 100. The camera has a scale of 2.
+        near, far = 0.1, 100
+        projection = [[2, 0, 0.2, 0], [0, 4, -0.1, 0],
+                      [0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)], [0, 0, -1, 0]]
+        camera = thing([[2, 0, 0, 1], [0, 2, 0, 2], [0, 0, 2, 5], [0, 0, 0, 1]], type="CAMERA", name="Camera",
+                       calc_matrix_camera=lambda depsgraph, x, y, scale_x, scale_y: projection)
         scene = stand_in(
-            camera=camera, unit_settings=stand_in(scale_length=0.001), frame_start=1, frame_end=2,
+            camera=camera, unit_settings=stand_in(scale_length=0.5), frame_start=1, frame_end=2,
             frame_set=lambda frame: None,
-            objects=[camera, thing(type="LIGHT", name="Key", data=spot), thing(type="LIGHT", name="Box", data=area)],
+            objects=[camera, thing([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 9], [0, 0, 0, 1]], type="LIGHT", name="Sun", data=sun),
+                     thing([[0, 0, 1, 7], [0, 1, 0, 8], [-1, 0, 0, 9], [0, 0, 0, 1]], type="LIGHT", name="Spot", data=spot),
+                     thing(IDENTITY, type="LIGHT", name="Box", data=area)],
             render=stand_in(resolution_x=16, resolution_y=9, pixel_aspect_x=1, pixel_aspect_y=1))
-        bpy = stand_in(data=stand_in(materials=[Material(pellucid="marble")]),
-                       context=stand_in(scene=scene, evaluated_depsgraph_get=lambda: None,
-                                        view_layer=stand_in(name="ViewLayer")))
-        record = script.scene_record(bpy)
-        self.assertEqual([light["name"] for light in record["lights"]], ["Key"])
-        self.assertEqual(record["materials"], [{"passIndex": 3, "material": {"preset": "marble"}}])
-        self.assertEqual(record["lights"][0]["spotSize"], 0.8)
-        self.assertEqual(json.loads(json.dumps(record))["camera"]["projection"], IDENTITY)
+        self.bpy = stand_in(data=stand_in(materials=[material(0, None), material(7, "marble"), material(3, None)]),
+                            context=stand_in(scene=scene, evaluated_depsgraph_get=lambda: None,
+                                             view_layer=stand_in(name="View")))
+
+    def test_camera_is_vulkans_and_without_scale(self):
+        camera = self.script.manifest(self.bpy, "render.exr")["camera"]
+        self.assertEqual(camera["viewFromWorld"], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, -2, -5, 1])
+        m, point = camera["clipFromView"], (0.5, -0.25, -5, 1)
+        x, y, z, w = (sum(m[4 * column + row] * point[column] for column in range(4)) for row in range(4))
+        self.assertAlmostEqual(w, 5)
+        self.assertAlmostEqual(x, 2 * 0.5 + 0.2 * -5)
+        self.assertAlmostEqual(y, -(4 * -0.25 - 0.1 * -5))
+        self.assertAlmostEqual((m[10] * -0.1 + m[14]) / 0.1, 0)
+        self.assertAlmostEqual((m[10] * -100 + m[14]) / 100, 1)
+
+    def test_lights_have_pellucids_units(self):
+        sun, spot = self.script.manifest(self.bpy, "render.exr")["lights"]
+        self.assertEqual(sun, {"type": "directional", "color": [0, 0, 1], "intensity": 3, "direction": [0, 0, -1]})
+        self.assertAlmostEqual(spot["intensity"], 100 / (4 * math.pi))
+        self.assertEqual(spot["position"], [7, 8, 9])
+        self.assertEqual(spot["direction"], [-1, 0, 0])
+        self.assertAlmostEqual(spot["outerConeAngle"], 0.4)
+        self.assertAlmostEqual(spot["innerConeAngle"], 0.3)
+
+    def test_manifests_are_those_of_captures(self):
         with tempfile.TemporaryDirectory() as folder:
-            script.export(bpy, os.path.join(folder, "r.###.json"))
-            script.export(bpy, os.path.join(folder, "still.json"))
+            self.script.export(self.bpy, os.path.join(folder, "r.###.json"))
+            self.script.export(self.bpy, os.path.join(folder, "still.json"))
             self.assertEqual(sorted(os.listdir(folder)), ["r.001.json", "r.002.json", "still.json"])
+            with open(os.path.join(folder, "r.002.json"), encoding="utf-8") as file:
+                written = json.load(file)
+            self.assertEqual(written["buffers"]["material"],
+                             {"file": "r.002.exr", "channel": "View.IndexMA.X", "map": {"0": 0, "7": 1, "3": 2}})
+            self.assertEqual(written["materials"], [{"preset": "marble"}, {"preset": "skin1"}])
+            run = subprocess.run([COMMAND, "info", os.path.join(folder, "still.json")], capture_output=True, text=True,
+                                 check=False)
+            self.assertIn("still.exr", run.stderr)  # the manifest is whole, the pixels are not there
 
 
 if __name__ == "__main__":

@@ -353,35 +353,6 @@ TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
   expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
 }
 
-TEST_F(Manifests, OtherLayersOfTheIrradiancesFileAreKept) {
-  const Image image = sampleImage(kSampleWidth, kSampleHeight, 4, 0.25f),
-              id(kSampleWidth, kSampleHeight, 1, 7);
-  const Image map(3, 3, 1, 1);
-  writeExrParts(directory / "l.exr", {{"screen",
-                                       {{"light.R", ExrFormat::Float, &image, 0},
-                                        {"light.G", ExrFormat::Float, &image, 1},
-                                        {"light.B", ExrFormat::Float, &image, 2},
-                                        {"light.A", ExrFormat::Half, &image, 3},
-                                        {"id", ExrFormat::Uint, &id, 0}},
-                                       {}},
-                                      {"shadow", {{"Z", ExrFormat::Float, &map, 0}}, {}}});
-  manifest["buffers"]["irradiance"] = {{"file", "l.exr"}, {"channels", {"light.R", "light.G", "light.B"}}};
-  writeText(directory / "m.json", manifest.dump());
-  const KeptLayers kept = readOtherLayers(readManifest(directory / "m.json").irradiance);
-  std::map<std::string, const ExrChannel*> channels;
-  for (const ExrChannel& channel : kept.channels) channels[channel.name] = &channel;
-  ASSERT_EQ(channels.size(), 6u) << "A, id and light.*";
-  EXPECT_EQ(channels.count("Z"), 0u) << "a shadow map has another size";
-  EXPECT_EQ(channels["id"]->format, ExrFormat::Uint);
-  EXPECT_EQ(channels["id"]->image->data[3], 7);
-  EXPECT_EQ(channels["A"]->format, ExrFormat::Half);
-  EXPECT_NEAR(channels["A"]->image->data[2], *(image.at(2, 0) + 3), 1e-3);
-  EXPECT_EQ(channels["light.G"]->image->data[4], *(image.at(4, 0) + 1));
-  manifest["buffers"]["irradiance"] = {{"constant", {1, 1, 1}}};
-  writeText(directory / "m.json", manifest.dump());
-  EXPECT_TRUE(readOtherLayers(readManifest(directory / "m.json").irradiance).channels.empty());
-}
-
 TEST_F(Manifests, FilesAreRelativeToTheManifest) {
   std::filesystem::create_directory(directory / "sub");
   for (const char* name : {"frontDepth", "backDepth", "irradiance", "material"})

@@ -132,7 +132,6 @@ bool isDark(const View& view, const ReplaySettings& s) {
   reference::Settings r;
   r.features = s.features;
   r.translucency = s.translucency;
-  r.jobs = 1;
   const Image image = reference::compute(view.capture, {material()}, r).image;
   for (uint32_t y = 0; y < view.rect[3]; ++y)
     for (uint32_t x = 0; x < view.rect[2]; ++x) {

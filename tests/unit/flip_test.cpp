@@ -96,12 +96,10 @@ TEST(Flip, OnlyTheMaskIsSeen) {
   const Flip outside = measureFlip(a, b, mask);
   EXPECT_EQ(outside.mean, 0);
   EXPECT_EQ(outside.p99, 0);
-  EXPECT_NEAR(outside.exposure, 0.8 / 0.6, 1e-6);  // the 99th percentile of all channels is red
   a.at(70, 30)[1] = 0.9f;
-  const Flip dot = measureFlip(a, b, mask, 1);
+  const Flip dot = measureFlip(a, b, mask);
   EXPECT_GT(dot.mean, 0);
   EXPECT_GT(dot.p99, 0);
-  EXPECT_EQ(dot.exposure, 1);
   EXPECT_EQ(measureFlip(a, b, Mask(mask.size())).mean, 0);
   EXPECT_THROW(measureFlip(Image(5, 5, 3), b, mask), InputError);
 }

@@ -83,11 +83,10 @@ TEST(MinimumDotTable, EntriesLieWhereLookupsFindThem) {
     return static_cast<float>(-0.5 - 0.2 * d[0] + 0.1 * d[1] * d[2]);
   };
   for (const DotTable& table :
-       {DotTable{false, 36, {0.3, 0.1, 1}, {0.1, 2, 0}}, DotTable{false, 1, {1, 0, 0}, {0, 0, 1}},
-        DotTable{true, 3, {0, 0, 1}, {0, 1, 0}}, DotTable{true, 8, {0.3, 0.1, 1}, {0.1, 2, 0}}}) {
+       {DotTable{36, {0.3, 0.1, 1}, {0.1, 2, 0}}, DotTable{1, {1, 0, 0}, {0, 0, 1}}}) {
     const std::vector<Vector3> directions = lightDirections(table);
     TranslucencySettings s;
-    s.angleModel = table.sphere ? PELLUCID_ANGLE_MINIMUM_DOT_SPHERE : PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+    s.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
     for (size_t i = 0; i < 3; ++i) {
       s.faceVector[i] = static_cast<float>(table.face[i]);
       s.upAxis[i] = static_cast<float>(table.up[i]);
@@ -104,7 +103,7 @@ TEST(MinimumDotTable, EntriesLieWhereLookupsFindThem) {
 }
 
 TEST(MinimumDotTable, SwingsFromBesideTheLightAboutTheUpAxis) {
-  const DotTable table{false, 4, {0, 0, 1}, {0, 1, 0}};
+  const DotTable table{4, {0, 0, 1}, {0, 1, 0}};
   std::vector<double> dots;
   measureMinimumDots(table, {2, 0.5}, [&](const Vector3& toLight, const Vector3& toEye) {
     EXPECT_NEAR(dot(toEye, toEye), 1, 1e-12);
@@ -121,21 +120,19 @@ TEST(MinimumDotTable, SwingsFromBesideTheLightAboutTheUpAxis) {
 // maximum at m - t (1 + m). Linear light is interpolated without error but for the four decimals, where no
 // step lies between m and the entry.
 TEST(MinimumDotTable, FindsWhereLightBegins) {
-  for (const bool sphere : {false, true}) {
-    const DotTable table{sphere, sphere ? 4 : 12, {0, 0, 1}, {0, 1, 0}};
-    const double t = 0.2;
-    const auto begin = [](const Vector3& toLight) { return -0.4 - 0.3 * toLight[0]; };
-    const std::vector<double> dots =
-        measureMinimumDots(table, {900, t}, [&](const Vector3& toLight, const Vector3& toEye) {
-          const double m = begin(toLight);
-          return std::max(0.0, (m - dot(toLight, toEye)) / (1 + m));
-        });
-    const std::vector<Vector3> directions = lightDirections(table);
-    ASSERT_EQ(dots.size(), directions.size());
-    for (size_t i = 0; i < dots.size(); ++i) {
-      const double m = begin(directions[i]);
-      EXPECT_NEAR(dots[i], m - t * (1 + m), 0.5001e-4) << i;
-    }
+  const DotTable table{12, {0, 0, 1}, {0, 1, 0}};
+  const double t = 0.2;
+  const auto begin = [](const Vector3& toLight) { return -0.4 - 0.3 * toLight[0]; };
+  const std::vector<double> dots =
+      measureMinimumDots(table, {900, t}, [&](const Vector3& toLight, const Vector3& toEye) {
+        const double m = begin(toLight);
+        return std::max(0.0, (m - dot(toLight, toEye)) / (1 + m));
+      });
+  const std::vector<Vector3> directions = lightDirections(table);
+  ASSERT_EQ(dots.size(), directions.size());
+  for (size_t i = 0; i < dots.size(); ++i) {
+    const double m = begin(directions[i]);
+    EXPECT_NEAR(dots[i], m - t * (1 + m), 0.5001e-4) << i;
   }
 }
 

@@ -7,7 +7,6 @@
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
 #include "raster/bodies.h"
-#include "reference/path_tracer/light_paths.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
 #include "refusal.h"
@@ -366,77 +365,6 @@ TEST(PathTracer, TruthIsInTheDomainOfAReplay) {
   const Truth truth = truthOf(sums);
   for (int c = 0; c < 3; ++c)
     EXPECT_NEAR(truth.image.at(3, 3)[c], 2, 3.5 * truth.standardError.at(3, 3)[c]) << c;
-}
-
-// Light that enters in its own direction: of a ball without a boundary it is the truth of paths from the
-// camera, which share the walk alone.
-TEST(PathTracer, PathsFromLightsAgreeWithPathsFromTheCamera) {
-  const SceneModel model = oneSolid(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(3)));
-  const auto scene = makeSolidScene(model);
-  Emitters emitters;
-  emitters.lights.resize(3);
-  emitters.lights[0].direction = {0.3, -0.2, 0.9};
-  emitters.lights[1].type = PELLUCID_LIGHT_SPOT;
-  emitters.lights[1].position = {0, 9, 4};
-  emitters.lights[1].direction = {0, -9, -4};
-  emitters.lights[1].intensity = 60;
-  emitters.lights[1].outerConeAngle = 0.25;
-  emitters.lights[2].type = PELLUCID_LIGHT_POINT;
-  emitters.lights[2].position = {7, 0, 7};
-  emitters.lights[2].radius = 2;
-  emitters.lights[2].intensity = 80;
-  emitters.environment = Environment{{0.2, 0.2, 0.2}, {0.1, 0.1, 0.1}};
-  Capture capture = ball(model);
-  for (std::size_t i = 0; i < 64; ++i) capture.material[i] = 1;  // pixels of 0.5 mm, all on the ball
-  const std::vector<TraceMedium> media = {skin1(1)};
-  TruthSums camera, lights;
-  const VisibleSurface surface = visibleSurface(capture, *scene);
-  TruthTracer(capture, surface, *scene, media, emitters).trace(camera, 2000, 1, 0, [] {});
-  LightPaths(capture, *scene, media, emitters).trace(lights, 5000, 2, 0, [] {});
-  const Truth a = truthOf(camera), b = truthOf(lights);
-  // Over all pixels: those of a curved surface average a little beside their centers' values.
-  for (int c = 0; c < 3; ++c) {
-    double difference = 0, variance = 0, sum = 0;
-    for (int y = 0; y < 8; ++y)
-      for (int x = 0; x < 8; ++x) {
-        difference += a.image.at(x, y)[c] - b.image.at(x, y)[c];
-        variance += std::pow(a.standardError.at(x, y)[c], 2) + std::pow(b.standardError.at(x, y)[c], 2);
-        sum += a.image.at(x, y)[c];
-      }
-    EXPECT_LT(std::sqrt(variance), 0.01 * sum) << "the test says something";
-    EXPECT_LT(std::abs(difference), 3 * std::sqrt(variance) + 0.003 * sum) << c;
-  }
-}
-
-// A slab lit straight on through its boundary, against discrete ordinates at normal incidence.
-TEST(PathTracer, LightRefractsIntoABody) {
-  SceneModel bounded = oneSolid(std::make_unique<Polyhedron>(
-      Polyhedron::box(glm::dvec3(0, 0, -0.5), glm::dmat3(1), glm::dvec3(30, 30, 0.5))));
-  bounded.radius = 45;
-  const auto scene = makeSolidScene(bounded);
-  Emitters emitters;
-  emitters.lights.resize(1);
-  emitters.lights[0].direction = {0, 0, 1};  // from behind
-  Capture capture = ball(bounded);
-  capture.clipFromView = orthographic(20, 20, {1, 20, false});
-  for (std::size_t i = 0; i < 64; ++i) capture.material[i] = 1;
-  const std::vector<TraceMedium> media = {skin1(1.4)};
-  TruthSums sums;
-  LightPaths(capture, *scene, media, emitters).trace(sums, 8000, 1, 0, [] {});
-  const Truth truth = truthOf(sums);
-  const glm::dvec3 rho = halfSpaceReflectance(media[0]);
-  for (int c = 0; c < 3; ++c) {
-    PellucidSlab slab;
-    ASSERT_EQ(pellucidSlabTransport(media[0].scattering[c], media[0].absorption[c], 1.4, 1, &slab, nullptr,
-                                    nullptr),
-              PELLUCID_OK);
-    double sum = 0, variance = 0;
-    for (std::size_t i = 0; i < 64; ++i) {
-      sum += truth.image.data[3 * i + static_cast<std::size_t>(c)];
-      variance += std::pow(truth.standardError.data[3 * i + static_cast<std::size_t>(c)], 2);
-    }
-    EXPECT_NEAR(sum / 64 * rho[c], slab.transmittanceNormal, 3 * std::sqrt(variance) / 64 * rho[c]) << c;
-  }
 }
 
 TEST(PathTracer, MediaThatNoWalkKnowsAreRefusedByName) {

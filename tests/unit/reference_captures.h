@@ -149,10 +149,10 @@ inline PellucidMaterial gaussianMaterial(double variance) {
 class DiffusedCapture {
 public:
   DiffusedCapture(const Capture& capture, const PellucidMaterial& material,
-                  const DiffusionSettings& settings = {})
+                  double discardedEnergy = 1e-5)
       : surfaces_(capture),
         irradiance_(irradianceOf(capture)),
-        diffusion_(capture, surfaces_, {material}, settings, irradiance_) {}
+        diffusion_(capture, surfaces_, {material}, irradiance_, discardedEnergy) {}
 
   double at(int x, int y) const { return diffusion_.at(x, y).x; }
   const Diffusion& diffusion() const { return diffusion_; }

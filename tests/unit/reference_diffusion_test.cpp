@@ -175,10 +175,7 @@ TEST(ReferenceDiffusion, CutOffLeavesNoMoreThanItStates) {
       *c.frontDepth.image.at(x, y) = 20.0f + 0.5f * static_cast<float>(x);
       for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = x % 2 ? 1.0f : 0.0f;
     }
-  DiffusionSettings fine, coarse;
-  fine.discardedEnergy = 1e-10;
-  coarse.discardedEnergy = 1e-3;
-  const DiffusedCapture all(c, burleyMaterial(0.5), fine), most(c, burleyMaterial(0.5), coarse);
+  const DiffusedCapture all(c, burleyMaterial(0.5), 1e-10), most(c, burleyMaterial(0.5), 1e-3);
   EXPECT_LT(most.diffusion().radius(), all.diffusion().radius());
   for (int x = 0; x < 48; x += 5) EXPECT_NEAR(most.at(x, 24), all.at(x, 24), 2e-3) << x;
 }
@@ -200,12 +197,6 @@ TEST(ReferenceDiffusion, RefusesWhatNoProfileCanHave) {
   PellucidMaterial m = gaussianMaterial(1);
   m.gaussianVariance[1][0] = -1;
   EXPECT_THROW(DiffusedCapture(c, m), InputError);
-  DiffusionSettings settings;
-  settings.discardedEnergy = 0;
-  EXPECT_THROW(DiffusedCapture(c, burleyMaterial(1), settings), InputError);
-  settings.discardedEnergy = 1e-5;
-  settings.source = ProfileSource::Table;
-  EXPECT_THROW(DiffusedCapture(c, burleyMaterial(1), settings), InputError);
 }
 
 }  // namespace

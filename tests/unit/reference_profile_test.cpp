@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "common/error.h"
 #include "reference_captures.h"
 
 namespace pellucid::harness::reference {
@@ -39,24 +38,6 @@ TEST(ReferenceProfile, RadiusLeavesOutTheEnergyItStates) {
       EXPECT_LE(1 - cumulative(p, radius), fraction);
       EXPECT_GT(1 - cumulative(p, 0.999 * radius), fraction);
     }
-}
-
-TEST(ReferenceProfile, TabulatedValuesReproduceTheProfileTheyCameFrom) {
-  const BurleyProfile burley{0.5};
-  std::vector<double> radius, value;
-  for (double r = 1e-4; r < 20; r *= 1.01) {
-    radius.push_back(r);
-    value.push_back(7 * burley.ringDensity(r) / (2 * std::numbers::pi * r));  // any scale
-  }
-  const TabulatedProfile table(radius, value);
-  for (const double r : {0.01, 0.1, 1.0, 5.0}) {
-    EXPECT_NEAR(table.cumulative(r), burley.cumulative(r), 1e-4);
-    EXPECT_NEAR(table.ringDensity(r), burley.ringDensity(r), 1e-4);
-  }
-  EXPECT_EQ(table.cumulative(30), 1);
-  EXPECT_THROW(TabulatedProfile({1, 1}, {1, 1}), InputError);
-  EXPECT_THROW(TabulatedProfile({0, 1}, {0, 0}), InputError);
-  EXPECT_THROW(TabulatedProfile({0, 1}, {1, -1}), InputError);
 }
 
 // A tiling's cells add up to the energy of the whole, wherever the receiver is: on a corner, on an edge,

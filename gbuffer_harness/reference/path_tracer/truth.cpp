@@ -9,15 +9,9 @@
 
 namespace pellucid::harness::reference {
 
-TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
-                         const std::vector<TraceMedium>& media, const Emitters& emitters)
-    : capture_(capture),
-      surface_(surface),
-      scene_(scene),
-      media_(media),
-      emitters_(emitters),
-      scale_(albedoOverRho(capture, media)) {}
+namespace {
 
+// Factor of the exitance at each pixel: its albedo, 1 where there is none, over rho of its medium; 0 without a material.
 std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media) {
   std::vector<glm::dvec3> scale(capture.material.size());
   std::vector<glm::dvec3> rho;
@@ -36,6 +30,17 @@ std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<
   }
   return scale;
 }
+
+}  // namespace
+
+TruthTracer::TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
+                         const std::vector<TraceMedium>& media, const Emitters& emitters)
+    : capture_(capture),
+      surface_(surface),
+      scene_(scene),
+      media_(media),
+      emitters_(emitters),
+      scale_(albedoOverRho(capture, media)) {}
 
 glm::dvec3 TruthTracer::sampleWall(std::size_t pixel, const TraceMedium::Wall& wall,
                                    PathRandom& random) const {

@@ -18,17 +18,13 @@ struct TruthSums {
   std::vector<glm::dvec3> sum, sumOfSquares;  // row 0 first; 0 where there is no surface
 };
 
-// Factor of exitance at each pixel: its albedo (absent: 1) over rho of its medium; 0 without a
-// material. media: one for each of the capture's materials. Throws InputError when rho of one is 0.
-std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<TraceMedium>& media);
-
 // A sample is a path from the surface at a pixel's center and estimates the exitance there (walk.h), times
 // albedo / rho: a flat body gives albedo times E, as a replay does. A thin wall gives albedo times the
 // capture's irradiance, and its transmittance of what arrives at its other face, likewise times albedo / rho.
 // Random numbers depend on seed, pixel and sample alone.
 class TruthTracer {
 public:
-  // All arguments must outlive the tracer. Throws as albedoOverRho() does.
+  // All arguments must outlive the tracer. Throws InputError when rho of a medium is 0.
   TruthTracer(const Capture& capture, const VisibleSurface& surface, const TraceScene& scene,
               const std::vector<TraceMedium>& media, const Emitters& emitters);
 

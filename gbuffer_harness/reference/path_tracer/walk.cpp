@@ -50,19 +50,20 @@ struct Chooser {
 
 }  // namespace
 
-WalkEntry enter(const TraceMedium& medium, const SurfacePoint& at, const glm::dvec3& direction,
-                PathRandom& random) {
-  if (medium.ior == 1) return {-lambertian(at.face, random), 1};
-  const double cosine = std::clamp(-glm::dot(direction, at.face), 0.0, 1.0);
-  return {refracted(direction, at.face, medium.ior), 1 - fresnel(cosine, medium.ior)};
-}
-
 std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium, const SurfacePoint& start,
                              PathRandom& random) {
-  const WalkEntry entry = enter(medium, start, -lambertian(start.face, random), random);
-  std::optional<WalkExit> exit = walkFrom(
-      scene, medium, start.body, start.position - scene.offset() * start.face, entry.direction, random);
-  if (exit) exit->weight *= entry.weight;
+  // The way inside, by Fresnel's refraction, or Lambertian where the medium has no boundary.
+  glm::dvec3 direction = -lambertian(start.face, random);
+  double entering = 1;
+  if (medium.ior == 1) {
+    direction = -lambertian(start.face, random);
+  } else {
+    entering = 1 - fresnel(std::clamp(-glm::dot(direction, start.face), 0.0, 1.0), medium.ior);
+    direction = refracted(direction, start.face, medium.ior);
+  }
+  std::optional<WalkExit> exit =
+      walkFrom(scene, medium, start.body, start.position - scene.offset() * start.face, direction, random);
+  if (exit) exit->weight *= entering;
   return exit;
 }
 

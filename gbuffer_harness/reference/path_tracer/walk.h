@@ -24,15 +24,6 @@ struct WalkExit {
 std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium, const SurfacePoint& start,
                              PathRandom& random);
 
-// The way inside of light that arrives from outside in this direction (unit): by Fresnel's
-// refraction with the fraction that enters as weight, or Lambertian where the medium has no boundary.
-struct WalkEntry {
-  glm::dvec3 direction;
-  double weight;
-};
-WalkEntry enter(const TraceMedium& medium, const SurfacePoint& at, const glm::dvec3& direction,
-                PathRandom& random);
-
 // The rest of such a path, from a point inside the body on in this direction (unit), with weight 1.
 std::optional<WalkExit> walkFrom(const TraceScene& scene, const TraceMedium& medium, int body,
                                  const glm::dvec3& position, const glm::dvec3& direction, PathRandom& random);
