@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "common/error.h"
+#include "common/guarded_memory.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
 #include "stress/stress.h"
@@ -30,6 +31,7 @@ constexpr int kShown = 3;
 struct Options {
   StressOptions stress;
   std::string device, folder;
+  bool guarded = false;
 };
 
 std::string kindOf(const StressFrame& frame) { return frame.wild ? "wild" : "tame"; }
@@ -42,6 +44,7 @@ std::string againText(const Options& options, std::uint64_t frame) {
   if (given.limits.pixels != defaults.limits.pixels)
     text += " --pixels " + std::to_string(given.limits.pixels);
   if (given.validate) text += " --validate";
+  if (options.guarded) text += " --guarded";
   return text;
 }
 
@@ -97,9 +100,13 @@ void run(Options& options) {
   StressOptions& s = options.stress;
   // Errors of these options come before a device is opened.
   if (!s.only.empty()) stress::requireCheck(s.only);
-  stress::Renderer renderer({options.device, s.validate});
+  DeviceOptions wanted{options.device, s.validate};
+  wanted.guarded = options.guarded;
+  stress::Renderer renderer(wanted);
   Reporter reporter(options);
   stress::StressEvents events;
+  if (options.guarded)
+    events.started = [&](std::uint64_t frame) { reportGuardFaults(againText(options, frame).c_str()); };
   events.violated = [&](const StressFrame& frame, const std::vector<Violation>& violations) {
     reporter(frame, violations);
   };
@@ -156,6 +163,10 @@ void addStressCommand(const Command& app) {
   command.option("--only", s.only, "one check by its name; CONTRIBUTING.md has them");
   command.flag("--validate", s.validate,
                "with Vulkan's core and synchronization validation, whose messages are violations");
+  command.flag(
+      "--guarded", options->guarded,
+      "constants in memory that ends at pages without access, and transients that hold 0xFF or what looks "
+      "like indices: an access beyond the constants ends the command");
   command.option("-o,--output", options->folder, "folder for captures of frames that violate a check");
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
   command.run([options] { run(*options); });

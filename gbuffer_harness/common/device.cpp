@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "common/error.h"
+#include "common/guarded_memory.h"
 #include "common/parse.h"
 
 namespace pellucid::harness {
@@ -180,6 +181,8 @@ void Device::chooseDevice(const DeviceOptions& options) {
       why = "Vulkan 1.1 is missing";
     else if (options.pushes && !hasExtension(candidate, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME))
       why = "VK_KHR_push_descriptor is missing";
+    else if (options.guarded && !hasExtension(candidate, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME))
+      why = "VK_EXT_external_memory_host is missing";
     else if (options.presents && !hasExtension(candidate, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
       why = "VK_KHR_swapchain is missing";
     else if (!family)
@@ -222,6 +225,8 @@ void Device::createDevice(const DeviceOptions& options) {
   std::vector<const char*> extensions;
   pushes_ = hasExtension(physicalDevice_, VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
   if (pushes_) extensions.push_back(VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME);
+  guarded_ = options.guarded;
+  if (guarded_) extensions.push_back(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME);
   if (options.presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
   VkPhysicalDeviceFeatures available, features{};
   vkGetPhysicalDeviceFeatures(physicalDevice_, &available);
@@ -335,11 +340,23 @@ VkBool32 Device::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsM
 
 HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage)
     : device_(device), size_(size) {
+  const bool guarded = device.guarded() && usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+  const VkExternalMemoryBufferCreateInfo external{VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO,
+                                                  nullptr,
+                                                  VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT};
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  if (guarded) info.pNext = &external;
   info.size = size;
   info.usage = usage;
   device.share(info);
   check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer_), "vkCreateBuffer");
+  if (guarded)
+    import();
+  else
+    allocate(usage);
+}
+
+void HostBuffer::allocate(VkBufferUsageFlags usage) {
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device_.handle(), buffer_, &needs);
   VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
@@ -363,6 +380,33 @@ HostBuffer::HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFla
   check(result, "vkAllocateMemory");
   check(vkBindBufferMemory(device_.handle(), buffer_, memory_, 0), "vkBindBufferMemory");
   check(vkMapMemory(device_.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+}
+
+void HostBuffer::import() {
+  constexpr auto kType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
+  VkPhysicalDeviceExternalMemoryHostPropertiesEXT host{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_MEMORY_HOST_PROPERTIES_EXT};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &host, {}};
+  vkGetPhysicalDeviceProperties2(device_.physicalDevice(), &properties);
+  VkMemoryRequirements needs;
+  vkGetBufferMemoryRequirements(device_.handle(), buffer_, &needs);
+  pages_ = std::make_unique<GuardedMemory>(static_cast<size_t>(needs.size),
+                                           static_cast<size_t>(host.minImportedHostPointerAlignment));
+  const auto getPointer = reinterpret_cast<PFN_vkGetMemoryHostPointerPropertiesEXT>(
+      vkGetDeviceProcAddr(device_.handle(), "vkGetMemoryHostPointerPropertiesEXT"));
+  VkMemoryHostPointerPropertiesEXT pointer{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT};
+  check(getPointer(device_.handle(), kType, pages_->data(), &pointer), "vkGetMemoryHostPointerPropertiesEXT");
+  const VkImportMemoryHostPointerInfoEXT import{VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT,
+                                                nullptr, kType, pages_->data()};
+  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &import};
+  allocate.allocationSize = pages_->size();
+  allocate.memoryTypeIndex =
+      device_.memoryType(needs.memoryTypeBits & pointer.memoryTypeBits,
+                         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+  check(vkAllocateMemory(device_.handle(), &allocate, nullptr, &memory_), "vkAllocateMemory");
+  const VkDeviceSize offset = (pages_->size() - needs.size) / needs.alignment * needs.alignment;
+  check(vkBindBufferMemory(device_.handle(), buffer_, memory_, offset), "vkBindBufferMemory");
+  mapped_ = static_cast<char*>(pages_->data()) + offset;
 }
 
 HostBuffer::~HostBuffer() {

@@ -14,6 +14,8 @@
 
 namespace pellucid::harness {
 
+class GuardedMemory;
+
 // Throws DeviceError naming the call unless `result` is VK_SUCCESS.
 void check(VkResult result, const char* call);
 
@@ -26,6 +28,7 @@ struct DeviceOptions {
   std::function<bool(VkInstance, VkPhysicalDevice, uint32_t family)> presents = {};
   bool computeQueue = false;  // a second queue, if possible of a family that does not draw
   bool pushes = false;        // the device must push descriptors
+  bool guarded = false;       // HostBuffers end at memory without access (common/guarded_memory.h)
 };
 
 // Bytes of images that went between host and device.
@@ -64,6 +67,7 @@ public:
   bool writesWithoutFormat() const { return writesWithoutFormat_; }
 
   bool pushes() const { return pushes_; }  // has VK_KHR_push_descriptor
+  bool guarded() const { return guarded_; }
 
   // A set for commands of run(), which frees it at its end: for devices that do not push descriptors.
   VkDescriptorSet setForRun(VkDescriptorSetLayout layout);
@@ -108,7 +112,7 @@ private:
   VkPhysicalDeviceProperties properties_{};
   std::string driver_;
   uint32_t families_[2] = {0, 0};  // of the queues
-  bool canDraw_ = false, writesWithoutFormat_ = false, pushes_ = false;
+  bool canDraw_ = false, writesWithoutFormat_ = false, pushes_ = false, guarded_ = false;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE, computeQueue_ = VK_NULL_HANDLE;
   VkCommandPool pool_ = VK_NULL_HANDLE;
@@ -120,7 +124,8 @@ private:
 };
 
 // Host-visible, coherent, mapped memory. Data that shaders and draws read is device-local, and data that the
-// device writes for the host is cached, where there is such memory.
+// device writes for the host is cached, where there is such memory. On guarded devices buffers that shaders
+// read lie in pages of the host that end where the buffer does.
 class HostBuffer {
 public:
   HostBuffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);
@@ -133,8 +138,12 @@ public:
   void* mapped() const { return mapped_; }
 
 private:
+  void allocate(VkBufferUsageFlags usage);
+  void import();
+
   const Device& device_;
   VkDeviceSize size_;
+  std::unique_ptr<GuardedMemory> pages_;  // null: the driver's memory
   VkBuffer buffer_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;
   void* mapped_ = nullptr;

@@ -229,7 +229,7 @@ void GpuImage::clear(std::uint8_t byte) {
   });
 }
 
-void GpuImage::fill(std::uint64_t seed) {
+void GpuImage::fill(std::uint64_t seed, std::uint32_t most) {
   std::vector<std::uint64_t> words((bytes() + 7) / 8);
   std::uint64_t state = seed | 1;  // xorshift64 stays at 0
   for (std::uint64_t& word : words) {
@@ -237,6 +237,11 @@ void GpuImage::fill(std::uint64_t seed) {
     state ^= state >> 7;
     state ^= state << 17;
     word = state;
+    if (most >= 255) continue;
+    for (int byte = 0; byte < 8; ++byte) {
+      const std::uint64_t value = (state >> 8 * byte & 255) % (most + 1);
+      word = (word & ~(std::uint64_t{255} << 8 * byte)) | value << 8 * byte;
+    }
   }
   transfer(words.data());
 }

@@ -28,7 +28,8 @@ public:
   void upload(const std::vector<std::uint32_t>& source, int layer = 0);  // R32_UINT
   void clear(std::uint8_t byte = 0);                                     // every byte of every texel
   void recordClear(VkCommandBuffer commandBuffer) const;  // with 0, in GENERAL; without barriers
-  void fill(std::uint64_t seed);                          // pseudo-random bits
+  // Pseudo-random bits; with `most` below 255 bytes of 0 to `most`.
+  void fill(std::uint64_t seed, std::uint32_t most = 255);
   // Reads formats that are usable as storage images, R32G32_SFLOAT, R8_UINT, R8_UNORM, R8G8B8A8_SRGB as
   // linear colors, and RGB of A2B10G10R10_UNORM_PACK32.
   Image download() const;

@@ -72,6 +72,16 @@ public:
     }
   }
 
+  // Bytes of 0xFF, or of 0 to a little more than what indices may be.
+  void poison(std::uint64_t seed, std::uint32_t materials) const {
+    if (!outputIsIrradiance_) output_->clear(0xFF);
+    for (GpuImage* image : transients_) {
+      if (seed % 2 == 0)
+        image->clear(0xFF);
+      else
+        image->fill(seed, std::min(materials + 1, 255u));
+    }
+  }
   void fillGarbage(std::uint64_t seed) const {
     if (!outputIsIrradiance_) output_->clear(0xFF);
     constexpr std::uint8_t kBytes[] = {0x00, 0xFF, 0x7B};  // 0, NaN, large finite numbers in both formats
@@ -290,7 +300,10 @@ Image FrameRun::output(const VkRect2D& rect) const { return images_->output().do
 Image FrameRun::irradiance() const { return images_->irradiance(); }
 
 void FrameRun::fillGarbage(std::uint64_t seed) const {
-  images_->fillGarbage(seed);
+  if (device_.guarded())
+    images_->poison(seed, data_.frame.materialCount);
+  else
+    images_->fillGarbage(seed);
   std::memset(constants_->mapped(), static_cast<int>(seed & 0xFF), static_cast<size_t>(constants_->size()));
   writeConstants();
 }

@@ -99,7 +99,8 @@ public:
   void restoreIrradiance(const Capture& capture) const;
 
   // Other bits where a recording must not depend on them: in transients, the constants' memory between
-  // constants, and an output that is not the irradiance, which becomes 0xFF bytes: NaN in both formats.
+  // constants, and an output that is not the irradiance, which becomes 0xFF bytes: NaN in both formats. On
+  // guarded devices transients hold 0xFF bytes or what looks like indices, by turns.
   void fillGarbage(std::uint64_t seed) const;
 
   // Content of an output that is not the irradiance before the first recording.

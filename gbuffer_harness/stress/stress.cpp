@@ -111,6 +111,7 @@ StressResult runStress(Renderer& renderer, const StressOptions& options, const S
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   for (std::uint64_t i = 0; options.frames ? i < *options.frames : seconds() < options.seconds; ++i) {
+    if (events.started) events.started(options.first + i);
     run.runFrame(options.first + i);
     run.result.seconds = seconds();
     if (events.progressed) events.progressed(run.result);

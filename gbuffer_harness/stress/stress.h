@@ -50,6 +50,7 @@ struct StressResult {
 
 // Functions that are called after a frame; each may be empty.
 struct StressEvents {
+  std::function<void(std::uint64_t frame)> started;                                 // before the frame is made
   std::function<void(const StressFrame&, const std::vector<Violation>&)> violated;  // where it violates checks
   std::function<void(const StressResult&)> progressed;                              // with what there is so far
 };

@@ -193,6 +193,30 @@ TEST_F(Cli, Stress) {
   expect(0, "stress --frames 2 --seed 6 --pixels 256 --only finite", "seed 6, frames 0 to 1, ");
 }
 
+// `before` of a command for one driver alone.
+std::string onDriver(const fs::path& icd) { return "export VK_DRIVER_FILES=" + icd.string() + ";"; }
+
+TEST_F(Cli, GuardedStress) {
+  const fs::path swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";  // as ./run driver has it
+  if (!fs::exists(swiftShader))
+    GTEST_SKIP() << swiftShader << " is not there: ./run driver swiftshader installs it";
+  const Outcome outcome =
+      run("stress --guarded --frames 2 --seed 1 --pixels 1024 --only finite", onDriver(swiftShader));
+  EXPECT_EQ(outcome.code, 0) << outcome.text;
+  for (const char* part : {"SwiftShader", "seed 1, frames 0 to 1"})
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << outcome.text;
+}
+
+// RADV for a card that is not there has no VK_EXT_external_memory_host.
+TEST_F(Cli, GuardedStressNamesTheExtensionThatADeviceLacks) {
+  const fs::path radv = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
+  const std::string before = onDriver(radv) + "export RADV_FORCE_FAMILY=navi21;";
+  if (!fs::exists(radv)) GTEST_SKIP() << radv << " is not there";
+  const Outcome outcome = run("stress --guarded --frames 1", before);
+  EXPECT_EQ(outcome.code, 4) << outcome.text;
+  EXPECT_NE(outcome.text.find("VK_EXT_external_memory_host is missing"), std::string::npos) << outcome.text;
+}
+
 // Frames that found faults which are mended: without the fine filter a pixel at an edge counted less than 0.
 TEST_F(Cli, StressFramesThatFoundFaultsHold) {
   expect(0, "stress --seed 303 --first 26 --frames 1 --pixels 12000000 --only more-irradiance",
