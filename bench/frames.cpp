@@ -13,7 +13,6 @@
 #include "frame_errors.h"
 #include "measure.h"
 #include "names.h"
-#include "scene.h"
 
 namespace pellucid::bench {
 
@@ -269,7 +268,7 @@ std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Con
                                                        const std::vector<FrameSource>& sources,
                                                        const FrameOptions& options, int repeat,
                                                        Report& report) {
-  requireRightWholeFrames(device, context, benchMaterial());
+  requireRightTransmittance(device, context, compileMaterial(PresetMaterial{"skin1"}, "skin1"));
   std::map<std::string, std::vector<Plot>> plots;
   for (const FrameSource& source : sources) {
     FrameBench bench(device, context, options, repeat, source, report);

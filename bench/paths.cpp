@@ -13,7 +13,6 @@
 #include "names.h"
 #include "raster/camera_path.h"
 #include "raster/raster.h"
-#include "scene.h"
 #include "sections.h"
 
 namespace pellucid::bench {
