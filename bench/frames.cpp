@@ -86,7 +86,7 @@ public:
         capture_(source.make()),
         turned_(source.turned),
         materials_(compileMaterials(capture_)),
-        truth_(diffusionTruth(capture_, materials_, options.errorPixels, options.cache)),
+        truth_(diffusionTruth(capture_, materials_, options.errorPixels)),
         report_(report) {
     // Every frame would multiply by it once; the errors do.
     withoutAlbedo_ = capture_;

@@ -55,7 +55,6 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
       ->check(CLI::Range(16, 1000000))
       ->capture_default_str();
-  app.add_option("--cache", f.cache, "folder that keeps what brute force gave");
 
   app.add_option("--json", options.json, "file to write, - for standard output");
   app.add_flag("--ratios", options.ratios,

@@ -17,7 +17,6 @@ struct FrameOptions {
   std::vector<std::string> names;          // of the made ones; empty: all
   std::optional<int> shadowSize;           // texels a side; absent: by the kind of device
   int errorPixels = 4096;                  // at most, that brute force is computed at
-  std::filesystem::path cache;             // folder; empty: brute force is computed each time
 };
 
 struct Options {
