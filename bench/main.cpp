@@ -72,9 +72,7 @@ private:
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
-    if (wanted("paths"))
-      for (auto& [name, plots] : measurePaths(device_, context, options_.frames, repeat_, report_))
-        plots_[name] = std::move(plots);
+    if (wanted("paths")) measurePaths(device_, context, options_.frames, repeat_, report_);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
         plots_["frames_" + size] = std::move(frames);
