@@ -247,25 +247,5 @@ TEST_F(Command, BadInputIsNamed) {
   EXPECT_NE(output().find("\"64\" is not WIDTHxHEIGHT"), std::string::npos) << output();
 }
 
-TEST_F(Command, SubmitsTheFramesOfARun) {
-  const std::filesystem::path file = folder / "submission.json";
-  ASSERT_EQ(runs("--tables frames --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --error-pixels "
-                 "16 --repeat 1 --submit " +
-                 file.string()),
-            0)
-      << output();
-  const Json json = Json::parse(std::ifstream(file));
-  EXPECT_NE(json["device"], "");
-  EXPECT_NE(json["driver"], "");
-  EXPECT_NE(json["commit"], "");
-  ASSERT_EQ(json["frames"].size(), 1u);
-  EXPECT_EQ(json["frames"][0]["frame"], "nothing");
-  EXPECT_GT(json["frames"][0]["us"]["Pellucid"], 0);
-  EXPECT_LT(std::filesystem::file_size(file), 4000u);
-  EXPECT_NE(runs("--tables context --submit " + file.string()), 0);
-  EXPECT_NE(output().find("the table frames"), std::string::npos) << output();
-  EXPECT_EQ(runs("--results " + file.string() + " --submit " + file.string()), 3);
-}
-
 }  // namespace
 }  // namespace pellucid::bench

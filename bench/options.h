@@ -22,12 +22,10 @@ struct FrameOptions {
 struct Options {
   std::string device, json;
   std::filesystem::path plot;
-  bool ratios = false;
   std::optional<int> repeat;  // absent: 7, or 3 on a software device
   std::set<std::string> tables = {"frames", "context"};
   FrameOptions frames;
   std::filesystem::path compare, results;
-  std::filesystem::path submit;  // file for a small extract of the results; empty: none
   // Options of the processes that the section context starts.
   bool createContext = false;
   std::uint32_t uses = 0;  // of that context; PellucidContextDesc::uses
