@@ -230,7 +230,6 @@ void view(const Command& command, const Options& options) {
   const ApplicationReport report = runApplication(application);
   std::printf("%s\n%d frames of the screen, %llu of the module\n", report.device.c_str(), report.frames,
               static_cast<unsigned long long>(report.recorded));
-  std::printf("%s", report.moving.table().c_str());
   for (const std::string& file : report.saved) std::printf("wrote %s\n", file.c_str());
 }
 

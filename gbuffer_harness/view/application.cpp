@@ -182,7 +182,6 @@ private:
 
   // One frame of the screen; true where another one has to follow.
   bool drawFrame() {
-    const auto begin = std::chrono::steady_clock::now();
     ++passed_;
     ++report_.frames;
     gui_->poll(width_, height_);
@@ -210,7 +209,6 @@ private:
       gui_->record(commandBuffer);
       screen_->end(commandBuffer);
     });
-    if (changes.scene && !panel_.isError) addMoving(begin);
     bool again = changes.any();
     if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
     if (panel_.save) save(panel_.savePath);
@@ -234,15 +232,6 @@ private:
       report(error.what(), true);
     }
     panel_.colors = falseColorsOf(state_.display, *frames_);
-  }
-
-  void addMoving(std::chrono::steady_clock::time_point begin) {
-    FrameTime time;
-    time.frame = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    time.scene = frames_->sceneMilliseconds();
-    time.rasterizer = sumOf(frames_->sceneTimes()) / 1000;
-    time.module = sumOf(frames_->times()) / 1000;
-    report_.moving.add(time);
   }
 
   void report(const std::string& message, bool isError) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "view/cost.h"
 #include "view/source.h"
 #include "view/state.h"
 
@@ -47,7 +46,6 @@ struct ApplicationReport {
   std::string device;          // its description
   int frames = 0;              // of the screen that were drawn
   std::uint64_t recorded = 0;  // of the module
-  MovingTimes moving;
   std::vector<std::string> saved;  // files
 };
 
