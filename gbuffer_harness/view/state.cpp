@@ -20,14 +20,13 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown) {
 }
 
 bool isFalseColor(Shown shown) {
-  return shown == Shown::Debug || shown == Shown::FrontDepth || shown == Shown::Material ||
-         shown == Shown::Tiles || shown == Shown::Isolated;
+  return shown == Shown::Debug || shown == Shown::FrontDepth || shown == Shown::Material;
 }
 
 const std::vector<std::string>& shownNames() {
   static const std::vector<std::string> names = {"after",  "before",   "through",     "difference",
                                                  "truth",  "debug",    "front depth", "normal",
-                                                 "albedo", "material", "tiles",       "isolated pixels"};
+                                                 "albedo", "material"};
   return names;
 }
 

@@ -27,9 +27,7 @@ enum class Shown {
   FrontDepth,  // as the capture stores it, in false color
   Normal,      // -1..1 as 0..1
   Albedo,
-  Material,  // index, in false color
-  Tiles,     // part of a tile's pixels that have a material, in false color
-  Isolated,  // of the output's pixels, 1 those brighter than all around, 2 darker, 3 both; in false color
+  Material,    // index, in false color
 };
 
 struct Display {
