@@ -289,25 +289,4 @@ TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
   }
 }
 
-// A medium described by coefficients, by OpenPBR and by coefficients again is nearly itself: OpenPBR's color
-// is that of light along the normal, and the panel takes the diffuse one.
-TEST(ViewMaterials, DescriptionsOfOneMedium) {
-  const CoefficientMaterial medium{{2, 1, 0.5}, {0.02, 0.05, 0.1}, 0, 1.4};
-  const MaterialSource openPbr = asKind(medium, MaterialKind::OpenPbr);
-  ASSERT_EQ(kindOf(openPbr), MaterialKind::OpenPbr);
-  const auto again = std::get<CoefficientMaterial>(asKind(openPbr, MaterialKind::Coefficients));
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(again.scattering[c] + again.absorption[c], medium.scattering[c] + medium.absorption[c], 1e-9);
-    EXPECT_NEAR(again.scattering[c] / medium.scattering[c], 1, 0.1);
-  }
-  const auto marble =
-      std::get<CoefficientMaterial>(asKind(PresetMaterial{"marble"}, MaterialKind::Coefficients));
-  EXPECT_EQ(marble.scattering[0], 2.19);
-  EXPECT_EQ(std::get<SkinMaterial>(asKind(medium, MaterialKind::Skin)), SkinMaterial{});
-  EXPECT_EQ(std::get<PresetMaterial>(asKind(SkinMaterial{}, MaterialKind::Preset)).preset, "skin1");
-  EXPECT_THROW(asKind(SkinMaterial{}, MaterialKind::OpenPbr), InputError);
-  EXPECT_THROW(asKind(BurleyMaterial{{1, 1, 1}, {}}, MaterialKind::Coefficients), InputError);
-  for (const MaterialKind kind : kOfferedKinds) EXPECT_EQ(kindOf(asKind(medium, kind)), kind);
-}
-
 }  // namespace
