@@ -197,24 +197,6 @@ Capture Renderer::render(Image* exactThickness) const {
   return capture;
 }
 
-// Mirrors world and view space in z: what an engine with a left-handed world hands over.
-void makeLeftHanded(Capture& capture) {
-  const glm::dmat4 mirror(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
-  const Matrix flip = fromGlm(mirror);
-  capture.clipFromView = multiply(capture.clipFromView, flip);
-  capture.viewFromWorld = multiply(flip, multiply(capture.viewFromWorld, flip));
-  for (std::size_t i = 2; i < capture.normal.data.size(); i += 3) capture.normal.data[i] *= -1;
-  for (Light& light : capture.lights) {
-    light.position[2] *= -1;
-    light.direction[2] *= -1;
-    for (ShadowMap& map : light.shadowMaps) {
-      map.clipFromWorld = multiply(map.clipFromWorld, flip);
-      // Shadow views stay right-handed whatever the world is: viewZ is along -z of this matrix.
-      map.viewFromWorld = multiply(*map.viewFromWorld, flip);
-    }
-  }
-}
-
 }  // namespace
 
 std::optional<Hit> firstHit(const std::vector<Object>& objects, const Ray& ray, double tMin) {
@@ -266,9 +248,7 @@ glm::dvec3 unshadowedIrradiance(const Light& light, const glm::dvec3& point, con
 }
 
 Capture renderCapture(const SceneModel& model, const SceneParameters& parameters, Image* exactThickness) {
-  Capture capture = Renderer(model, parameters).render(exactThickness);
-  if (parameters.handedness == Handedness::Left) makeLeftHanded(capture);
-  return capture;
+  return Renderer(model, parameters).render(exactThickness);
 }
 
 }  // namespace pellucid::harness

@@ -33,9 +33,6 @@ struct SceneParameters {
   std::optional<bool> orthographic;  // absent: as the scene prefers
   bool reversedZ = false;
   bool infiniteFar = false;  // perspective only
-  // Left mirrors the world in z, so that viewFromWorld stays rigid. Manifests are right-handed: such
-  // a capture is for use in memory.
-  Handedness handedness = Handedness::Right;
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_VIEW_Z;  // DEVICE or VIEW_Z
   bool normalsInViewSpace = false;
 

@@ -185,17 +185,16 @@ struct Convention {
   bool orthographic, reversed, infinite;
 };
 
-void expectKnownPoints(const Convention& c, Handedness handedness) {
+void expectKnownPoints(const Convention& c) {
   const double n = 2;
   const double f = c.infinite ? kInfinity : 50;
-  const double forward = handedness == Handedness::Left ? 1 : -1;
   const double tangent = 0.5;  // half the vertical view
   const double aspect = 1.6;
   const Matrix matrix = c.orthographic
-                            ? orthographic(2 * aspect, 2, {n, f, c.reversed}, handedness)
-                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed}, handedness);
+                            ? orthographic(2 * aspect, 2, {n, f, c.reversed})
+                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed});
   const auto project = [&](double x, double y, double viewZ) {
-    const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, forward * viewZ, 1);
+    const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, -viewZ, 1);
     EXPECT_GT(clip.w, 0);
     return glm::dvec3(clip) / clip.w;
   };
@@ -204,81 +203,41 @@ void expectKnownPoints(const Convention& c, Handedness handedness) {
     const glm::dvec3 corner = project(-top * aspect, top, z);  // upper left as seen
     EXPECT_NEAR(corner.x, -1, 1e-14);
     EXPECT_NEAR(corner.y, -1, 1e-14);  // Vulkan's y points down
-    EXPECT_NEAR(corner.z, deviceDepth(matrix, z, handedness), 1e-14);
+    EXPECT_NEAR(corner.z, deviceDepth(matrix, z), 1e-14);
   }
   EXPECT_NEAR(project(0, 0, n).z, c.reversed ? 1 : 0, 1e-14);
   const double farthest = c.infinite ? 1e12 : f;
   EXPECT_NEAR(project(0, 0, farthest).z, c.reversed ? 0 : 1, 1e-11);
-  EXPECT_EQ(clearDepth(matrix, handedness), c.reversed ? 0 : 1);
+  EXPECT_EQ(clearDepth(matrix), c.reversed ? 0 : 1);
 }
 
 TEST(Scene, CamerasMapKnownPointsInEveryConvention) {
-  for (const Handedness handedness : {Handedness::Right, Handedness::Left})
-    for (const bool reversed : {false, true})
-      for (const auto& [parallel, infinite] : {std::pair(false, false), {false, true}, {true, false}}) {
-        SCOPED_TRACE(testing::Message()
-                     << (handedness == Handedness::Left ? "left" : "right") << ", reversed " << reversed
-                     << ", orthographic " << parallel << ", infinite " << infinite);
-        expectKnownPoints({parallel, reversed, infinite}, handedness);
-      }
+  for (const bool reversed : {false, true})
+    for (const auto& [parallel, infinite] : {std::pair(false, false), {false, true}, {true, false}}) {
+      SCOPED_TRACE(testing::Message() << "reversed " << reversed << ", orthographic " << parallel << ", infinite "
+                                      << infinite);
+      expectKnownPoints({parallel, reversed, infinite});
+    }
 }
 
 // World position of a pixel through the capture's own matrices, as a replay would find it.
-glm::dvec3 worldPosition(const Capture& capture, int x, int y, double viewZ, bool left) {
+glm::dvec3 worldPosition(const Capture& capture, int x, int y, double viewZ) {
   const glm::dmat4 clipFromView = toGlm(capture.clipFromView);
-  const double z = left ? viewZ : -viewZ;
-  const double w = clipFromView[2][3] * z + clipFromView[3][3];
+  const double w = clipFromView[2][3] * -viewZ + clipFromView[3][3];
   const glm::dvec4 view(w * (2 * (x + 0.5) / capture.width - 1) / clipFromView[0][0],
-                        w * (2 * (y + 0.5) / capture.height - 1) / clipFromView[1][1], z, 1);
+                        w * (2 * (y + 0.5) / capture.height - 1) / clipFromView[1][1], -viewZ, 1);
   return glm::inverse(toGlm(capture.viewFromWorld)) * view;
 }
 
-TEST(Scene, LeftHandedCaptureIsTheMirroredWorld) {
-  SceneParameters parameters = sized("torus", 32);
-  parameters.shadowSize = 16;
-  parameters.lightType = PELLUCID_LIGHT_POINT;
-  const Capture right = makeScene(parameters);
-  parameters.handedness = Handedness::Left;
-  const Capture left = makeScene(parameters);
-  EXPECT_NEAR(glm::determinant(toGlm(left.viewFromWorld)), 1, 1e-14) << "still rigid";
-  const glm::dvec3 mirror(1, 1, -1);
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      const double viewZ = *right.frontDepth.image.at(x, y);
-      EXPECT_EQ(*left.frontDepth.image.at(x, y), *right.frontDepth.image.at(x, y));
-      if (viewZ >= kNoDepth) continue;
-      const glm::dvec3 a = worldPosition(right, x, y, viewZ, false);
-      const glm::dvec3 b = worldPosition(left, x, y, viewZ, true);
-      EXPECT_NEAR(glm::length(a * mirror - b), 0, 1e-9);
-      EXPECT_EQ(left.normal.at(x, y)[2], -right.normal.at(x, y)[2]);
-      const ShadowMap& rightMap = right.lights[0].shadowMaps[0];
-      const ShadowMap& leftMap = left.lights[0].shadowMaps[0];
-      const auto seenAlike = [&](const Matrix& fromRight, const Matrix& fromLeft) {
-        return glm::length(toGlm(fromRight) * glm::dvec4(a, 1) - toGlm(fromLeft) * glm::dvec4(b, 1)) < 1e-9;
-      };
-      EXPECT_TRUE(seenAlike(rightMap.clipFromWorld, leftMap.clipFromWorld));
-      EXPECT_TRUE(seenAlike(*rightMap.viewFromWorld, *leftMap.viewFromWorld));
-    }
-  }
-  EXPECT_EQ(toGlm(left.lights[0].position), mirror * toGlm(right.lights[0].position));
-  EXPECT_EQ(toGlm(left.lights[0].direction), mirror * toGlm(right.lights[0].direction));
-}
-
 TEST(Scene, LookAtIsRigidAndPutsTheTargetOnTheAxis) {
-  for (const Handedness handedness : {Handedness::Right, Handedness::Left}) {
-    for (const Vector3& up : {Vector3{0, 1, 0}, Vector3{1, 2, 3}}) {  // the second is parallel to the axis
-      const Matrix matrix = lookAt({1, 2, 3}, {2, 4, 6}, up, handedness);
-      const glm::dmat4 view = toGlm(matrix);
-      EXPECT_NEAR(glm::determinant(view), 1, 1e-14);
-      const glm::dvec4 eye = view * glm::dvec4(1, 2, 3, 1);
-      const glm::dvec4 target = view * glm::dvec4(2, 4, 6, 1);
-      EXPECT_NEAR(glm::length(glm::dvec3(eye)), 0, 1e-14);
-      EXPECT_NEAR(target.x, 0, 1e-14);
-      EXPECT_NEAR(target.y, 0, 1e-14);
-      EXPECT_NEAR(target.z, std::sqrt(14) * (handedness == Handedness::Left ? 1 : -1), 1e-14);
-      if (up == Vector3{0, 1, 0}) {
-        EXPECT_GT((view * glm::dvec4(0, 1, 0, 0)).y, 0);
-      }
+  for (const Vector3& up : {Vector3{0, 1, 0}, Vector3{1, 2, 3}}) {  // the second is parallel to the axis
+    const glm::dmat4 view = toGlm(lookAt({1, 2, 3}, {2, 4, 6}, up));
+    EXPECT_NEAR(glm::determinant(view), 1, 1e-14);
+    EXPECT_NEAR(glm::length(glm::dvec3(view * glm::dvec4(1, 2, 3, 1))), 0, 1e-14);
+    const glm::dvec3 target(view * glm::dvec4(2, 4, 6, 1));
+    EXPECT_NEAR(glm::length(target - glm::dvec3(0, 0, -std::sqrt(14))), 0, 1e-14);
+    if (up == Vector3{0, 1, 0}) {
+      EXPECT_GT((view * glm::dvec4(0, 1, 0, 0)).y, 0);
     }
   }
 }
@@ -496,7 +455,7 @@ TEST(Scene, EverySceneIsAConsistentCapture) {
         const glm::dvec3 n(normal[0], normal[1], normal[2]);
         EXPECT_NEAR(glm::length(n), 1, 1e-6) << info.name;
         const glm::dvec3 eye = glm::inverse(toGlm(capture.viewFromWorld))[3];
-        const glm::dvec3 point = worldPosition(capture, x, y, front, false);
+        const glm::dvec3 point = worldPosition(capture, x, y, front);
         const bool perspective = capture.clipFromView[11] != 0;
         // At silhouettes rounding may turn the normal past the edge.
         if (perspective) {
