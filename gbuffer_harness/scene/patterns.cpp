@@ -54,9 +54,6 @@ SceneModel patternModel(const SceneParameters& parameters, const OptionValues& o
     return glm::dvec3(pattern(glm::dot(p, across), glm::dot(p, up)));
   };
   model.paintSamples = static_cast<int>(options["samples"]);
-  model.exactThickness = [normal, thickness = 2 * half](const Ray& ray) {
-    return thickness / std::abs(glm::dot(ray.direction, normal));
-  };
   return model;
 }
 

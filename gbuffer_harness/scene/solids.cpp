@@ -43,25 +43,12 @@ SceneModel backLit(const SceneParameters& parameters, const OptionValues& option
   return model;
 }
 
-// Distance of the ray's line from the origin, squared.
-double squaredDistanceToOrigin(const Ray& ray) {
-  const glm::dvec3 moment = glm::cross(ray.origin, ray.direction);
-  return glm::dot(moment, moment);
-}
-
-double halfChord(double radius, double squaredDistance) {
-  return std::sqrt(std::max(0.0, radius * radius - squaredDistance));
-}
-
 SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const glm::dmat3 axes = turned(options["tilt"]);
   const double thickness = options["thickness"];
   model.endless = true;
   addBox(model, -thickness / 2 * axes[2], {kInfinity, kInfinity, thickness / 2}, axes);
-  model.exactThickness = [normal = axes[2], thickness](const Ray& ray) {
-    return thickness / std::abs(glm::dot(ray.direction, normal));
-  };
   return model;
 }
 
@@ -73,11 +60,6 @@ SceneModel buildWedge(const SceneParameters& parameters, const OptionValues& opt
   const glm::dvec3 back(-std::sin(angle), 0, -std::cos(angle));
   addObject(model, std::make_unique<Polyhedron>(
                        std::vector<Polyhedron::Plane>{{{0, 0, 1}, 0}, {back, -edge * std::sin(angle)}}));
-  model.exactThickness = [edge, back](const Ray& ray) {
-    // From the front face z = 0 at distance x from the edge, the back face recedes at a known rate.
-    const double x = ray.at(-ray.origin.z / ray.direction.z).x - edge;
-    return std::max(0.0, x * -back.x / glm::dot(back, ray.direction));
-  };
   return model;
 }
 
@@ -86,9 +68,6 @@ SceneModel buildSphere(const SceneParameters& parameters, const OptionValues& op
   const double radius = options["radius"];
   addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(radius)));
   model.radius = kMargin * radius;
-  model.exactThickness = [radius](const Ray& ray) {
-    return 2 * halfChord(radius, squaredDistanceToOrigin(ray));
-  };
   return model;
 }
 
@@ -98,25 +77,15 @@ SceneModel buildHollowSphere(const SceneParameters& parameters, const OptionValu
   const double inner = outer * options["hollow"];
   addObject(model, std::make_unique<HollowSphere>(glm::dvec3(0), outer, inner));
   model.radius = kMargin * outer;
-  model.exactThickness = [outer, inner](const Ray& ray) {
-    const double square = squaredDistanceToOrigin(ray);
-    return square < inner * inner ? halfChord(outer, square) - halfChord(inner, square)
-                                  : 2 * halfChord(outer, square);
-  };
   return model;
 }
 
 SceneModel buildTorus(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const double tilt = radians(options["tilt"]);
-  const Torus torus(glm::dvec3(0), {0, std::sin(tilt), std::cos(tilt)}, options["majorRadius"],
-                    options["majorRadius"] * options["tube"]);
-  addObject(model, std::make_unique<Torus>(torus));
+  addObject(model, std::make_unique<Torus>(glm::dvec3(0), glm::dvec3(0, std::sin(tilt), std::cos(tilt)),
+                                           options["majorRadius"], options["majorRadius"] * options["tube"]));
   model.radius = kMargin * options["majorRadius"] * (1 + options["tube"]);
-  model.exactThickness = [torus](const Ray& ray) {
-    const std::optional<Span> span = torus.firstSpan(ray, 0);
-    return span ? span->exit - span->enter : 0;
-  };
   return model;
 }
 
@@ -128,7 +97,6 @@ SceneModel buildTwoSheets(const SceneParameters& parameters, const OptionValues&
   addBox(model, {0, 0, -thickness / 2}, {kInfinity, kInfinity, thickness / 2});
   addObject(model, std::make_unique<Polyhedron>(std::vector<Polyhedron::Plane>{
                        {{-1, 0, 0}, 0}, {{0, 0, 1}, second}, {{0, 0, -1}, thickness - second}}));
-  model.exactThickness = [thickness](const Ray& ray) { return thickness / std::abs(ray.direction.z); };
   return model;
 }
 
