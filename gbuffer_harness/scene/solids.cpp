@@ -100,43 +100,6 @@ SceneModel buildTwoSheets(const SceneParameters& parameters, const OptionValues&
   return model;
 }
 
-SceneModel buildBlocked(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double thickness = options["thickness"];
-  const double extent = options["extent"];
-  addBox(model, {0, 0, -thickness / 2}, {0.4 * extent, 0.4 * extent, thickness / 2});
-  // The body stands on the line from the sheet's center to the light.
-  const glm::dvec3 towardLight =
-      -glm::dvec3(model.lights[0].direction[0], model.lights[0].direction[1], model.lights[0].direction[2]);
-  addObject(model, std::make_unique<Ellipsoid>(towardLight * (options["bodyDistance"] * extent),
-                                               glm::dvec3(options["bodyRadius"] * extent)));
-  return model;
-}
-
-SceneModel buildOccluder(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double thickness = options["thickness"];
-  const double extent = options["extent"];
-  addBox(model, {0, 0, -thickness / 2}, {0.2 * extent, 0.3 * extent, thickness / 2});
-  // Wide enough to fill the view, not to reach the light's way to the sheet.
-  addBox(model, {0, 0, -(options["distance"] + 0.25) * extent}, {0.8 * extent, 0.8 * extent, 0.25 * extent});
-  model.radius = 1.6 * extent;
-  return model;
-}
-
-SceneModel buildTwoMaterials(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double extent = options["extent"];
-  addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(0.4, 0.4, 0.1) * extent));
-  model.radius = kMargin * 0.4 * extent;
-  model.objects[0].materialAt = [](const glm::dvec3& p) {
-    return static_cast<std::uint8_t>(p.x < 0 ? 1 : 2);
-  };
-  model.materials = {PresetMaterial{"skin1"}, PresetMaterial{"marble"}};
-  model.lights.push_back(lightAt(parameters, {1, 1, 1}, 1, extent));
-  return model;
-}
-
 SceneModel buildBodies(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const double unit = options["extent"] / 40, gap = options["gap"], numbers = options["numbers"];
@@ -203,25 +166,6 @@ std::vector<SceneDefinition> solidScenes() {
         "Thin sheet; behind its right half a second one stands in the light",
         {thin, {"gap", 15, 1e-3, 1e4, "between the sheets, mm"}, kLightAngle, kExtent}},
        buildTwoSheets},
-      {{"blocked",
-        "Thin sheet with a body between it and the light",
-        {thin,
-         {"bodyDistance", 0.5, 0.1, 0.8, "of the body's center from the sheet, extents"},
-         {"bodyRadius", 0.15, 0.01, 0.45, "extents"},
-         kLightAngle,
-         kExtent}},
-       buildBlocked},
-      {{"occluder",
-        "Thin sheet in front of a large body, lit from between them: the body must not block it",
-        {thin,
-         {"distance", 0.5, 0.3, 0.5, "of the body's front from the sheet, extents"},
-         withDefault(kLightAngle, 75),
-         kExtent}},
-       buildOccluder},
-      {{"two_materials",
-        "One body of two materials, border at x = 0, lit from both sides",
-        {kLightAngle, kExtent}},
-       buildTwoMaterials},
       {{"bodies",
         "Ball in the shadow of another of its medium, and a ball of two parts, lit from the left",
         {{"gap", 3, 1e-3, 1e3, "between the balls, mm"},
