@@ -77,8 +77,8 @@ const Rule kRules[] = {
     {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials", kArray},
     {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials.*",
      kObject},
-    {"skins,animations", kArray},
-    {"skins,animations.*", kObject},
+    {"skins", kArray},
+    {"skins.*", kObject},
     {"scenes.*.nodes", kArray},
     {"scenes.*.nodes.*", kIndex},
     {"nodes.*.children", kArray},
@@ -210,8 +210,8 @@ GltfJson parseGltfJson(const std::string& file, std::string_view text) {
   return json;
 }
 
-// The document without what this program reads itself and tinygltf is stricter about than glTF: animations
-// and skins, buffers that only stand in for compressed ones, and indices that lie in a Draco stream.
+// The document without animations, and without what this program reads itself and tinygltf is stricter about
+// than glTF: skins, buffers that only stand in for compressed ones, and indices that lie in a Draco stream.
 GltfJson forTinyGltf(const GltfJson& json) {
   GltfJson result = json;
   result.erase("animations");

@@ -87,9 +87,9 @@ struct PlacedNode {
 
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
-// Every node of the default scene, as it stands in `pose`, parents before children. Throws InputError when a
+// Every node of the default scene, parents before children. Throws InputError when a
 // transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
-std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose) {
+std::vector<PlacedNode> placeNodes(const GltfDocument& document) {
   const tinygltf::Model& model = document.model;
   if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
   const std::size_t scene =
@@ -115,7 +115,7 @@ std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pos
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();
-    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
+    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, next.node);
     placed.push_back({next.node, world});
     push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
@@ -200,7 +200,6 @@ private:
   const GltfDocument& document_;
   const GltfOptions& options_;
   GltfScene scene_;
-  Pose pose_;
   std::vector<std::optional<glm::dmat4>> worldFromNode_;  // of the nodes in the scene
   std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
   std::uint32_t furtherObjects_ = 0;
@@ -297,10 +296,7 @@ void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
       document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
   const tinygltf::Mesh& mesh = document_.model.meshes[index];
   MeshPose pose;
-  const auto animated = pose_.weights.find(node);
-  pose.weights = animated != pose_.weights.end() ? animated->second
-                 : source.weights.empty()        ? mesh.weights
-                                                 : source.weights;
+  pose.weights = source.weights.empty() ? mesh.weights : source.weights;
   if (source.skin != -1) pose.joints = readJoints(document_, source.skin, worldFromNode_, nodeName + ".skin");
   // Instances are bodies of their own.
   bool isFirst = true;
@@ -416,9 +412,8 @@ GltfScene Loader::load() {
   model.metersPerUnit = options_.metersPerUnit;
   sayIgnored();
   checkPresetNames();
-  pose_ = readPose(document_, options_.time, options_.animation, scene_.warnings);
   worldFromNode_.resize(document_.model.nodes.size());
-  const std::vector<PlacedNode> placed = placeNodes(document_, pose_);
+  const std::vector<PlacedNode> placed = placeNodes(document_);
   for (const auto& [node, world] : placed) worldFromNode_[node] = world;
   for (const auto& [node, world] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];

@@ -68,7 +68,6 @@ std::string soundGlb() {
   const int indices = b.indices({0, 1, 2, 0, 2, 3});
   const int joints = b.accessor(std::vector<std::uint8_t>(16, 0), 5121, "VEC4", 4);
   const int weights = b.accessor(std::vector<float>(16, 0.25f), 5126, "VEC4", 4);
-  const int times = b.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
   const int path = b.vectors({0, 0, 0, 1, 2, 3});
   const std::vector<std::uint16_t> replaced = {1};
   const int sparse = b.view(replaced.data(), 2);
@@ -88,9 +87,6 @@ std::string soundGlb() {
                           {"indices", indices},
                           {"material", 0}}}}}};
   b.json["skins"] = {{{"joints", {0}}}};
-  b.json["animations"] = {
-      {{"samplers", {{{"input", times}, {"output", path}}}},
-       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
   b.json["nodes"] = {
       {{"mesh", 0},
        {"skin", 0},
