@@ -21,7 +21,6 @@ constexpr std::size_t kMaxDepth = 100;  // tinygltf reads extensions and extras 
 
 // Read, and drawn as the extension says.
 const std::set<std::string> kRead = {
-    "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",

@@ -33,22 +33,17 @@ const GltfJson& array(const GltfDocument& document, const GltfJson& object, cons
 
 }  // namespace
 
-glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField) {
-  const auto &t = parts.translation, &r = parts.rotation, &s = parts.scale;
-  const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-  if (!(glm::length(rotation) > 0)) document.fail(rotationField, "is a quaternion of length 0");
-  return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
-         glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
-}
-
 glm::dmat4 parentFromNode(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
   const std::string field = nodeName(index) + ".";
   if (node.matrix.empty()) {
-    const Parts parts{numbers(document, node.translation, {0, 0, 0}, field + "translation"),
-                      numbers(document, node.rotation, {0, 0, 0, 1}, field + "rotation"),
-                      numbers(document, node.scale, {1, 1, 1}, field + "scale")};
-    return matrixOf(document, parts, field + "rotation");
+    const auto t = numbers(document, node.translation, {0, 0, 0}, field + "translation"),
+               r = numbers(document, node.rotation, {0, 0, 0, 1}, field + "rotation"),
+               s = numbers(document, node.scale, {1, 1, 1}, field + "scale");
+    const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+    if (!(glm::length(rotation) > 0)) document.fail(field + "rotation", "is a quaternion of length 0");
+    return glm::translate(glm::dmat4(1), {t[0], t[1], t[2]}) * glm::mat4_cast(glm::normalize(rotation)) *
+           glm::scale(glm::dmat4(1), {s[0], s[1], s[2]});
   }
   const auto m = numbers(document, node.matrix, std::vector<double>(16), field + "matrix");
   glm::dmat4 matrix;

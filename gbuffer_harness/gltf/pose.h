@@ -10,14 +10,6 @@
 
 namespace pellucid::harness {
 
-// Translation, rotation (x, y, z, w) and scale of a node or instance.
-struct Parts {
-  std::vector<double> translation = {0, 0, 0}, rotation = {0, 0, 0, 1}, scale = {1, 1, 1};
-};
-
-// Throws InputError naming `rotationField` for a quaternion of length 0.
-glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField);
-
 // The node as it stands in the file. Throws InputError for a transform that is not made of finite numbers.
 glm::dmat4 parentFromNode(const GltfDocument& document, std::size_t node);
 

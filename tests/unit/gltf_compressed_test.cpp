@@ -1,4 +1,4 @@
-// glTF: compressed and sparse accessors, texture transforms and instances.
+// glTF: compressed and sparse accessors, and texture transforms.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
@@ -189,34 +189,6 @@ TEST_F(Gltf, TextureTransformsMoveTheCoordinates) {
   b.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"]
         ["scale"] = {1};
   expectRefused(b.glb(), {"baseColorTexture.extensions.KHR_texture_transform.scale", "2 numbers"});
-}
-
-// ---- EXT_mesh_gpu_instancing
-
-TEST_F(Gltf, InstancesAreBodiesOfTheirOwn) {
-  GltfBuilder b = square();
-  const float h = std::sqrt(0.5f);
-  const int translation = b.vectors({0, 0, 0, 5, 0, 0}), scale = b.vectors({1, 1, 1, 2, 1, 1});
-  const int rotation = b.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, h, h}, 5126, "VEC4", 4);
-  b.json["nodes"] = {
-      {{"mesh", 0},
-       {"translation", {0, 10, 0}},
-       {"extensions",
-        {{"EXT_mesh_gpu_instancing",
-          {{"attributes", {{"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}}}}}}}}};
-  b.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
-  const Model m = loadGltf(write("t.glb", b.glb())).model;
-  ASSERT_EQ(m.parts.size(), 2u);
-  EXPECT_NE(m.parts[0].object, m.parts[1].object);
-  expectVector(m.vertices[2].position, 2, 12, 0);
-  expectVector(m.vertices[6].position, 3, 14, 0);  // (2, 2) stretched to (4, 2), turned to (-2, 4)
-  const auto attributes = [&]() -> Json& {
-    return b.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
-  };
-  attributes()["SCALE"] = b.vectors({1, 1, 1});
-  expectRefused(b.glb(), {"nodes[0].extensions.EXT_mesh_gpu_instancing.attributes.SCALE", "1 are not the 2"});
-  attributes() = Json::object();
-  expectRefused(b.glb(), {"EXT_mesh_gpu_instancing.attributes", "none of"});
 }
 
 }  // namespace
