@@ -24,7 +24,6 @@ const std::set<std::string> kRead = {
     "KHR_lights_punctual",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_ior",
-    "KHR_materials_scatter",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_volume_scatter",
