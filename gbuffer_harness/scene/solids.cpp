@@ -8,7 +8,6 @@ namespace pellucid::harness {
 
 namespace {
 
-
 // Of a shadow map around what it covers.
 constexpr double kMargin = 1.1;
 
@@ -43,6 +42,40 @@ SceneModel backLit(const SceneParameters& parameters, const OptionValues& option
   return model;
 }
 
+// Between concentric spheres around the origin.
+class HollowSphere : public DistanceField {
+public:
+  HollowSphere(double outer, double inner)
+      : DistanceField(glm::dvec3(-1.01 * outer), glm::dvec3(1.01 * outer), 1e-3 * (outer - inner)),
+        outer_(outer),
+        inner_(inner) {}
+  double distance(const glm::dvec3& p) const override {
+    const double r = glm::length(p);
+    return std::max(r - outer_, inner_ - r);
+  }
+
+private:
+  double outer_, inner_;
+};
+
+// Around the origin.
+class Torus : public DistanceField {
+public:
+  Torus(const glm::dvec3& axis, double major, double minor)
+      : DistanceField(glm::dvec3(-1.01 * (major + minor)), glm::dvec3(1.01 * (major + minor)), 1e-3 * minor),
+        axis_(axis),
+        major_(major),
+        minor_(minor) {}
+  double distance(const glm::dvec3& p) const override {
+    const double height = glm::dot(axis_, p);
+    return std::hypot(glm::length(p - height * axis_) - major_, height) - minor_;
+  }
+
+private:
+  glm::dvec3 axis_;
+  double major_, minor_;
+};
+
 SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const glm::dmat3 axes = turned(options["tilt"]);
@@ -75,7 +108,7 @@ SceneModel buildHollowSphere(const SceneParameters& parameters, const OptionValu
   SceneModel model = backLit(parameters, options);
   const double outer = options["radius"];
   const double inner = outer * options["hollow"];
-  addObject(model, std::make_unique<HollowSphere>(glm::dvec3(0), outer, inner));
+  addObject(model, std::make_unique<HollowSphere>(outer, inner));
   model.radius = kMargin * outer;
   return model;
 }
@@ -83,8 +116,8 @@ SceneModel buildHollowSphere(const SceneParameters& parameters, const OptionValu
 SceneModel buildTorus(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const double tilt = radians(options["tilt"]);
-  addObject(model, std::make_unique<Torus>(glm::dvec3(0), glm::dvec3(0, std::sin(tilt), std::cos(tilt)),
-                                           options["majorRadius"], options["majorRadius"] * options["tube"]));
+  addObject(model, std::make_unique<Torus>(glm::dvec3(0, std::sin(tilt), std::cos(tilt)), options["majorRadius"],
+                                           options["majorRadius"] * options["tube"]));
   model.radius = kMargin * options["majorRadius"] * (1 + options["tube"]);
   return model;
 }
