@@ -26,7 +26,6 @@ struct PerceptionOptions {
 struct SceneToView {
   std::function<std::unique_ptr<Source>(Device&)> open;
   std::function<void(ViewState&)> start;  // changes the state that the source begins with
-  std::vector<std::string> arguments;     // that open it again, for saved sessions
 };
 
 struct ApplicationOptions {
@@ -38,8 +37,7 @@ struct ApplicationOptions {
   std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
   SceneToView scene;
-  std::function<SceneToView(const std::filesystem::path&)> load;  // of a file that a person names later
-  PerceptionOptions perception;                                   // with scenes, `scene` is not looked at
+  PerceptionOptions perception;  // with scenes, `scene` is not looked at
 };
 
 struct ApplicationReport {

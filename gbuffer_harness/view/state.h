@@ -75,7 +75,7 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown);
 // True where the picture is looked up in false colors.
 bool isFalseColor(Shown shown);
 
-// Names for the panel and for session files, in the order of the enumerations.
+// Names for the panel and for scripts, in the order of the enumeration.
 const std::vector<std::string>& shownNames();
 
 // A light of that type from behind and above, of which 1 arrives at `center`.
