@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "gltf/document.h"
@@ -16,12 +17,14 @@ struct AccessorValues {
   const float* operator[](std::size_t i) const { return &data[i * static_cast<std::size_t>(components)]; }
 };
 
-// Every value of the accessor whose index `field` holds, normalized integers as fractions and other integers
-// (KHR_mesh_quantization) as they are. Between `least` and `most` components. Throws InputError naming `field`
-// or the accessor's own field; also for values that are not finite.
-AccessorValues readFloats(const GltfDocument& document, const Field& field, int least, int most);
+// Every value of the accessor, normalized integers as fractions and other integers (KHR_mesh_quantization)
+// as they are. Between `least` and `most` components. Throws InputError naming `field`, what refers to the
+// accessor, or the accessor's own field; also for values that are not finite.
+AccessorValues readFloats(const GltfDocument& document, int accessor, int least, int most,
+                          const std::string& field);
 
 // Vertex indices below `vertexCount`.
-std::vector<std::uint32_t> readIndices(const GltfDocument& document, const Field& field, std::size_t vertexCount);
+std::vector<std::uint32_t> readIndices(const GltfDocument& document, int accessor, std::size_t vertexCount,
+                                       const std::string& field);
 
 }  // namespace pellucid::harness

@@ -5,25 +5,30 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <new>
+#include <optional>
 #include <set>
 #include <string_view>
 
 #include "common/error.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kMaxFileBytes = 1u << 30;
-constexpr int kMostBytes = 1 << 30;
+constexpr std::size_t kMaxDepth = 100;  // tinygltf reads extensions and extras recursively
 
 // Read, and drawn as the extension says.
 const std::set<std::string> kRead = {
-    "KHR_lights_punctual",   "KHR_materials_diffuse_transmission", "KHR_materials_ior",
-    "KHR_materials_transmission", "KHR_materials_volume",          "KHR_materials_volume_scatter",
-    "KHR_mesh_quantization", "KHR_texture_transform",
+    "KHR_lights_punctual",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_volume_scatter",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
 };
 
 // Neither change the triangles nor the diffuse color of a still.
@@ -34,54 +39,318 @@ const std::set<std::string> kHarmless = {
     "KHR_materials_unlit",       "KHR_materials_variants",   "KHR_xmp_json_ld",
 };
 
-constexpr const char* kLists[] = {"scenes",   "nodes",  "meshes",   "accessors", "bufferViews", "cameras",
-                                  "images",   "skins",  "textures", "samplers",  "materials"};
+struct Type {
+  const char* name;
+  bool (*holds)(const GltfJson& value);
+};
+const Type kObject{"an object", [](const GltfJson& v) { return v.is_object(); }};
+const Type kArray{"an array", [](const GltfJson& v) { return v.is_array(); }};
+const Type kString{"a string", [](const GltfJson& v) { return v.is_string(); }};
+const Type kNumber{"a number", [](const GltfJson& v) { return v.is_number(); }};
+const Type kBoolean{"true or false", [](const GltfJson& v) { return v.is_boolean(); }};
+const Type kIndex{"an integer >= 0", [](const GltfJson& v) {
+                    return v.is_number_unsigned() || (v.is_number_integer() && v.get<std::int64_t>() >= 0);
+                  }};
 
-// `fail`: throws.
-GltfBytes readFile(const fs::path& path, const std::function<void(const std::string&)>& fail) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) fail("\"" + path.filename().string() + "\" is not found");
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) fail(error.message());
-  if (size > kMaxFileBytes)
-    fail("has " + std::to_string(size) + " bytes; " + std::to_string(kMaxFileBytes) + " are the most");
-  GltfBytes bytes(static_cast<std::size_t>(size));
-  std::ifstream in(path, std::ios::binary);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in) fail("cannot be read");
-  return bytes;
+enum class Need { None, Always, OfType };  // OfType: where the object's "type" is the path's last key
+
+// Paths that tinygltf needs to be there, or to be of a type. A step of a path is a key, keys with commas, or
+// *: every element of an array or object.
+struct Rule {
+  const char* path;
+  const Type& type;
+  Need need = Need::None;
+};
+
+constexpr Need kRequired = Need::Always;
+
+const Rule kRules[] = {
+    {"asset", kObject, kRequired},
+    {"asset.version", kString, kRequired},
+    {"scene", kIndex},
+    {"extensionsUsed,extensionsRequired", kArray},
+    {"extensionsUsed,extensionsRequired.*", kString},
+    {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials", kArray},
+    {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials.*",
+     kObject},
+    {"skins", kArray},
+    {"skins.*", kObject},
+    {"scenes.*.nodes", kArray},
+    {"scenes.*.nodes.*", kIndex},
+    {"nodes.*.children", kArray},
+    {"nodes.*.children.*", kIndex},
+    {"nodes.*.mesh,skin,camera", kIndex},
+    {"nodes.*.matrix,translation,rotation,scale,weights", kArray},
+    {"meshes.*.weights", kArray},
+    {"meshes.*.primitives", kArray, kRequired},
+    {"meshes.*.primitives.*", kObject},
+    {"meshes.*.primitives.*.attributes", kObject, kRequired},
+    {"meshes.*.primitives.*.attributes.*", kIndex},
+    {"meshes.*.primitives.*.indices,material,mode", kIndex},
+    {"meshes.*.primitives.*.targets", kArray},
+    {"meshes.*.primitives.*.targets.*", kObject},
+    {"meshes.*.primitives.*.targets.*.*", kIndex},
+    {"accessors.*.bufferView,byteOffset", kIndex},
+    {"accessors.*.componentType,count", kIndex, kRequired},
+    {"accessors.*.type", kString, kRequired},
+    {"accessors.*.normalized", kBoolean},
+    {"accessors.*.sparse", kObject},
+    {"accessors.*.sparse.count", kIndex, kRequired},
+    {"accessors.*.sparse.indices,values", kObject, kRequired},
+    {"accessors.*.sparse.indices,values.bufferView", kIndex, kRequired},
+    {"accessors.*.sparse.indices.componentType", kIndex, kRequired},
+    {"bufferViews.*.buffer,byteLength", kIndex, kRequired},
+    {"bufferViews.*.byteOffset,byteStride", kIndex},
+    {"buffers.*.byteLength", kIndex, kRequired},
+    {"buffers.*.uri", kString},
+    {"cameras.*.type", kString, kRequired},
+    {"cameras.*.perspective,orthographic", kObject, Need::OfType},
+    {"cameras.*.perspective.yfov,znear", kNumber, kRequired},
+    {"cameras.*.perspective.zfar,aspectRatio", kNumber},
+    {"cameras.*.orthographic.xmag,ymag,zfar,znear", kNumber, kRequired},
+    {"images.*.uri", kString},
+    {"images.*.bufferView", kIndex},
+    {"textures.*.source,sampler", kIndex},
+    {"materials.*.pbrMetallicRoughness,normalTexture,extensions", kObject},
+    {"materials.*.pbrMetallicRoughness.baseColorFactor", kArray},
+    {"materials.*.pbrMetallicRoughness.baseColorTexture", kObject},
+    {"materials.*.pbrMetallicRoughness.baseColorTexture.index", kIndex, kRequired},
+    {"materials.*.normalTexture.index", kIndex, kRequired},
+    {"materials.*.alphaMode", kString},
+    {"materials.*.alphaCutoff", kNumber},
+    {"materials.*.doubleSided", kBoolean},
+    {"extensions", kObject},
+    {"extensions.KHR_lights_punctual", kObject},
+    {"extensions.KHR_lights_punctual.lights", kArray},
+    {"extensions.KHR_lights_punctual.lights.*", kObject},
+    {"extensions.KHR_lights_punctual.lights.*.type", kString, kRequired},
+    {"extensions.KHR_lights_punctual.lights.*.spot", kObject, Need::OfType},
+};
+
+std::string shown(const GltfJson& value) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = value.dump(-1, ' ', false, GltfJson::error_handler_t::replace);
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
+  return text;
 }
 
-std::size_t word(const GltfBytes& bytes, std::size_t offset) {
-  std::size_t value = 0;  // GLB is little-endian
-  for (std::size_t i = 0; i < 4; ++i) value |= static_cast<std::size_t>(bytes[offset + i]) << (8 * i);
+// `rest`: the rule's path below `value`, whose own path is `field`.
+void apply(const std::string& file, const Rule& rule, const GltfJson& value, std::string_view rest,
+           const std::string& field) {
+  if (rest.empty()) {
+    if (!rule.type.holds(value)) throw InputError(file, field, shown(value) + " is not " + rule.type.name);
+    return;
+  }
+  const std::size_t dot = rest.find('.');
+  const std::string_view step = rest.substr(0, dot);
+  const std::string_view below = dot == std::string_view::npos ? std::string_view() : rest.substr(dot + 1);
+  if (step == "*") {
+    std::size_t i = 0;
+    if (value.is_array())
+      for (const GltfJson& element : value)
+        apply(file, rule, element, below, field + "[" + std::to_string(i++) + "]");
+    else if (value.is_object())
+      for (const auto& [name, element] : value.items()) apply(file, rule, element, below, field + "." + name);
+    return;
+  }
+  if (!value.is_object()) return;  // a rule of its own says so
+  for (const std::string& key : split(std::string(step), ',')) {
+    const std::string path = field.empty() ? key : field + "." + key;
+    const auto found = value.find(key);
+    if (found != value.end())
+      apply(file, rule, *found, below, path);
+    else if (below.empty() &&
+             (rule.need == Need::Always || (rule.need == Need::OfType && value["type"] == key)))
+      throw InputError(file, path, "is missing");
+  }
+}
+
+// Depth of brackets outside strings.
+void checkNesting(const std::string& file, std::string_view json) {
+  std::size_t depth = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (inString && c == '\\')
+      ++i;
+    else if (c == '"')
+      inString = !inString;
+    else if (!inString && (c == '[' || c == '{') && ++depth > kMaxDepth)
+      throw InputError(file, "", "its JSON is nested deeper than " + std::to_string(kMaxDepth) + " levels");
+    else if (!inString && (c == ']' || c == '}') && depth > 0)
+      --depth;
+  }
+}
+
+void checkRequired(const std::string& file, const GltfJson& json) {
+  const auto required = json.find("extensionsRequired");
+  if (required == json.end() || !required->is_array()) return;
+  for (const GltfJson& name : *required)
+    if (name.is_string() && !kRead.count(name) && !kHarmless.count(name))
+      throw InputError(file, "extensionsRequired", "\"" + name.get<std::string>() + "\" is not supported");
+}
+
+// Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
+// extensions that are required and not known, and properties that are missing or of another type.
+GltfJson parseGltfJson(const std::string& file, std::string_view text) {
+  checkNesting(file, text);
+  GltfJson json;
+  try {
+    json = GltfJson::parse(text);
+  } catch (const GltfJson::exception& e) {
+    throw InputError(file, "", std::string("its JSON cannot be parsed: ") + e.what());
+  }
+  if (!json.is_object()) throw InputError(file, "", "its JSON is not an object");
+  checkRequired(file, json);
+  for (const Rule& rule : kRules) apply(file, rule, json, rule.path, "");
+  return json;
+}
+
+// The document without animations, which captures have none of, and without skins, which this program reads
+// itself: tinygltf is stricter about both than glTF.
+GltfJson forTinyGltf(const GltfJson& json) {
+  GltfJson result = json;
+  result.erase("animations");
+  result.erase("skins");
+  return result;
+}
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxFileBytes = 1u << 30;  // tinygltf counts in 32 bits
+constexpr std::size_t kGlbHeader = 20;
+
+// Why the file cannot be read, or nothing.
+std::optional<std::string> readFile(const fs::path& path, std::vector<unsigned char>& bytes) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return "is not a file that can be read";
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) return error.message();
+  if (size > kMaxFileBytes)
+    return "has " + std::to_string(size) + " bytes; " + std::to_string(kMaxFileBytes) + " are the most";
+  bytes.resize(static_cast<std::size_t>(size));
+  std::ifstream in(path, std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!in) return "cannot be read";
+  return std::nullopt;
+}
+
+// What tinygltf's callbacks need and leave behind.
+struct Session {
+  fs::path folder;  // canonical
+  std::string refusal;
+  std::vector<std::vector<unsigned char>> images;
+};
+
+// tinygltf also looks in the working directory; only the file's folder counts here.
+bool isInFolder(const std::string& name, Session& session) {
+  if (name.rfind(session.folder.string(), 0) != 0) return false;
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(name, error);
+  const fs::path relative = real.lexically_relative(session.folder);
+  if (!error && !relative.empty() && *relative.begin() != "..") return true;
+  session.refusal = "\"" + name.substr(std::min(name.size(), session.folder.string().size() + 1)) +
+                    "\" leaves the file's folder";
+  return false;
+}
+
+tinygltf::FsCallbacks fileAccess(Session& session) {
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.user_data = &session;
+  callbacks.FileExists = [](const std::string& name, void* user) {
+    std::error_code error;
+    return isInFolder(name, *static_cast<Session*>(user)) && fs::is_regular_file(name, error);
+  };
+  callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
+  callbacks.ReadWholeFile = [](std::vector<unsigned char>* bytes, std::string* problem,
+                               const std::string& name, void*) {
+    const std::optional<std::string> why = readFile(name, *bytes);
+    if (why && problem) *problem = *why;
+    return !why;
+  };
+  callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+    return false;
+  };
+  return callbacks;
+}
+
+// Keeps the encoded bytes: which images are decoded is decided later. Those of a buffer view are left
+// alone, because tinygltf has not checked that the view lies in its buffer.
+bool keepImage(tinygltf::Image* image, const int index, std::string*, std::string*, int, int,
+               const unsigned char* bytes, int size, void* user) {
+  if (image->bufferView >= 0) return true;
+  auto& images = static_cast<Session*>(user)->images;
+  images.resize(std::max(images.size(), static_cast<std::size_t>(index) + 1));
+  images[static_cast<std::size_t>(index)].assign(bytes, bytes + size);
+  return true;
+}
+
+std::uint32_t word(const std::vector<unsigned char>& bytes, std::size_t offset) {
+  std::uint32_t value = 0;  // GLB is little-endian
+  for (std::size_t i = 0; i < 4; ++i) value |= static_cast<std::uint32_t>(bytes[offset + i]) << (8 * i);
   return value;
 }
 
-// The JSON of a file of either container, and the buffer that a GLB brings along.
-struct Container {
-  std::string json;
-  GltfBytes binary;
-};
+bool isBinary(const std::vector<unsigned char>& bytes) {
+  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
+}
 
-Container containerOf(const std::string& file, const GltfBytes& bytes) {
-  constexpr std::size_t kHeader = 12, kChunkHeader = 8, kJson = kHeader + kChunkHeader;
-  if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) return {{bytes.begin(), bytes.end()}, {}};
-  if (bytes.size() < kJson) throw InputError(file, "", "is truncated: a GLB header has 20 bytes");
+// The JSON text of either container.
+std::string_view jsonText(const std::string& file, const std::vector<unsigned char>& bytes) {
+  const auto* text = reinterpret_cast<const char*>(bytes.data());
+  if (!isBinary(bytes)) return {text, bytes.size()};
+  if (bytes.size() < kGlbHeader) throw InputError(file, "", "is truncated: a GLB header has 20 bytes");
   if (word(bytes, 4) != 2)
     throw InputError(file, "", "is GLB version " + std::to_string(word(bytes, 4)) + "; 2 is known");
-  const auto chunk = [&](std::size_t first) {
-    const std::size_t size = word(bytes, first - kChunkHeader);
-    if (size > bytes.size() - first)
-      throw InputError(file, "",
-                       "is truncated: a chunk says " + std::to_string(size) + " bytes, there are " +
-                           std::to_string(bytes.size() - first));
-    const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(first);
-    return GltfBytes(begin, begin + static_cast<std::ptrdiff_t>(size));
-  };
-  const GltfBytes json = chunk(kJson);
-  const std::size_t binary = kJson + json.size() + kChunkHeader;
-  return {{json.begin(), json.end()}, binary <= bytes.size() ? chunk(binary) : GltfBytes()};
+  if (word(bytes, 8) > bytes.size())
+    throw InputError(file, "",
+                     "is truncated: its header says " + std::to_string(word(bytes, 8)) +
+                         " bytes, there are " + std::to_string(bytes.size()));
+  if (word(bytes, 12) > bytes.size() - kGlbHeader)
+    throw InputError(file, "",
+                     "its JSON chunk says " + std::to_string(word(bytes, 12)) + " bytes, there are " +
+                         std::to_string(bytes.size() - kGlbHeader));
+  return {text + kGlbHeader, word(bytes, 12)};
+}
+
+// The length of what a GLB holds behind its JSON: its first buffer.
+std::size_t binaryBytes(const std::vector<unsigned char>& bytes, std::string_view json) {
+  constexpr std::size_t kChunkHeader = 8;
+  const std::size_t chunk = kGlbHeader + json.size();
+  return bytes.size() - chunk < kChunkHeader
+             ? 0
+             : std::min<std::size_t>(word(bytes, chunk), bytes.size() - chunk - kChunkHeader);
+}
+
+void setWord(std::vector<unsigned char>& bytes, std::size_t offset, std::size_t value) {
+  for (std::size_t i = 0; i < 4; ++i) bytes[offset + i] = static_cast<unsigned char>(value >> (8 * i));
+}
+
+// The file with another JSON text.
+std::vector<unsigned char> withJson(std::vector<unsigned char> bytes, std::size_t oldSize, std::string text) {
+  if (!isBinary(bytes)) return {text.begin(), text.end()};
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto first = bytes.begin() + kGlbHeader;
+  const std::size_t shared = std::min(oldSize, text.size());
+  std::copy_n(text.begin(), shared, first);
+  const auto end = first + static_cast<std::ptrdiff_t>(shared);
+  if (text.size() > oldSize)
+    bytes.insert(end, text.begin() + static_cast<std::ptrdiff_t>(shared), text.end());
+  else
+    bytes.erase(end, first + static_cast<std::ptrdiff_t>(oldSize));
+  setWord(bytes, 8, bytes.size());
+  setWord(bytes, 12, text.size());
+  return bytes;
+}
+
+// tinygltf's lines as one sentence.
+std::string sentenceOf(std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i))
+    text.replace(i, 1, "; ");
+  constexpr std::size_t kLongest = 300;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + " ...";
+  return text.empty() ? "cannot be parsed" : text;
 }
 
 std::string percentDecoded(const std::string& uri) {
@@ -98,119 +367,124 @@ std::string percentDecoded(const std::string& uri) {
   return result;
 }
 
-GltfBytes fromBase64(const Field& field, std::string_view text) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  while (text.ends_with('=')) text.remove_suffix(1);
-  GltfBytes bytes;
-  std::uint32_t bits = 0, count = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) field.fail("is not base64");
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes.push_back(static_cast<unsigned char>(bits >> count));
-  }
-  return bytes;
+std::size_t base64Bytes(const std::string& uri) {
+  const std::size_t comma = uri.find(',');
+  std::size_t digits = comma == std::string::npos ? 0 : uri.size() - comma - 1;
+  for (std::size_t end = uri.size(); digits > 0 && uri[end - 1] == '='; --end) --digits;
+  return digits * 3 / 4;
 }
 
-// `binary`: a GLB's own buffer, which has no URI and may be padded.
-GltfBytes readBuffer(const GltfDocument& document, const Field& buffer, const GltfBytes& binary) {
-  const auto uri = buffer.find("uri");
-  GltfBytes bytes = uri || binary.empty() ? document.resource(buffer["uri"]) : binary;
-  const auto claimed = static_cast<std::size_t>(buffer["byteLength"].integer(1, kMostBytes));
-  if (claimed > bytes.size())
-    buffer["byteLength"].fail(std::to_string(claimed) + " are not the " + std::to_string(bytes.size()) +
-                              " bytes that there are");
-  bytes.resize(claimed);
-  return bytes;
+// Refuses by name the buffers that tinygltf would refuse without a name. `binary`: bytes of a GLB's own
+// buffer.
+void checkBuffers(const GltfDocument& document, Session& session, std::size_t binary) {
+  const auto buffers = document.json.find("buffers");
+  if (buffers == document.json.end()) return;
+  for (std::size_t i = 0; i < buffers->size(); ++i) {
+    const GltfJson& buffer = (*buffers)[i];
+    const std::string field = "buffers[" + std::to_string(i) + "].";
+    const std::size_t claimed = buffer["byteLength"];
+    const std::string uri = buffer.value("uri", "");
+    std::size_t bytes = binary;
+    std::string where = "BIN chunk";
+    if (uri.empty()) {
+      if (binary == 0) document.fail(field + "uri", "is missing");
+      if (claimed <= binary) continue;  // the chunk is padded
+    } else if (uri.rfind("data:", 0) == 0) {
+      bytes = base64Bytes(uri);
+      where = "data URI";
+    } else {
+      const std::string name = session.folder.string() + "/" + percentDecoded(uri);
+      if (!isInFolder(name, session)) document.fail(field + "uri", session.refusal);
+      std::error_code error;
+      if (!fs::is_regular_file(name, error)) document.fail(field + "uri", "\"" + uri + "\" is not found");
+      bytes = static_cast<std::size_t>(fs::file_size(name, error));
+      where = "\"" + uri + "\"";
+    }
+    if (claimed != bytes)
+      document.fail(field + "byteLength", std::to_string(claimed) + " are not the " + std::to_string(bytes) +
+                                              " bytes of its " + where);
+  }
 }
 
 }  // namespace
 
+const GltfJson* extensionOf(const GltfJson& value, const char* name) {
+  const auto extensions = value.find("extensions");
+  if (extensions == value.end() || !extensions->is_object()) return nullptr;
+  const auto found = extensions->find(name);
+  return found != extensions->end() && found->is_object() ? &*found : nullptr;
+}
+
 bool isDrawn(const std::string& extension) { return kRead.count(extension) != 0; }
 
-std::optional<Field> extensionOf(const Field& object, const char* name) {
-  const auto extensions = object.find("extensions");
-  return extensions ? extensions->find(name) : std::nullopt;
+void GltfDocument::fail(const std::string& field, const std::string& sentence) const {
+  throw InputError(file, field, sentence);
 }
 
-std::optional<std::string> nameOf(const Field& object) {
-  const auto name = object.find("name");
-  if (!name || name->value() == "") return std::nullopt;
-  return name->text();
+std::size_t GltfDocument::index(int index, std::size_t size, const std::string& field,
+                                const char* plural) const {
+  if (index < 0 || static_cast<std::size_t>(index) >= size)
+    fail(field, std::to_string(index) + " is not one of the " + std::to_string(size) + " " + plural);
+  return static_cast<std::size_t>(index);
 }
 
-double numberOr(const Field& object, const char* key, double absent, double least, double most) {
+int GltfDocument::reference(const GltfJson& object, const char* key, const std::string& field) const {
   const auto found = object.find(key);
-  return found ? found->number(least, most) : absent;
+  if (found == object.end()) fail(field + "." + key, "is missing");
+  if (!found->is_number_unsigned()) fail(field + "." + key, found->dump() + " is not an integer >= 0");
+  return static_cast<int>(std::min<std::size_t>(*found, 1u << 30));
 }
 
-const std::vector<Field>& GltfDocument::list(const char* name) const {
-  static const std::vector<Field> kNone;
-  const auto found = lists.find(name);
-  return found == lists.end() ? kNone : found->second;
-}
-
-std::size_t GltfDocument::index(const char* name, const Field& field) const {
-  const auto i = static_cast<std::size_t>(field.integer(0, kMostBytes));
-  const std::size_t size = list(name).size();
-  if (i >= size) field.fail(std::to_string(i) + " is not one of the " + std::to_string(size) + " " + name);
-  return i;
-}
-
-GltfDocument::Bytes GltfDocument::bufferView(const Field& field) const {
-  const Field& view = element("bufferViews", field);
-  const GltfBytes& data = buffers[index("buffers", view["buffer"])];
-  const auto offset = view.find("byteOffset");
-  const auto first = static_cast<std::size_t>(offset ? offset->integer(0, kMostBytes) : 0),
-             size = static_cast<std::size_t>(view["byteLength"].integer(1, kMostBytes));
-  if (first > data.size() || size > data.size() - first)
-    view.fail("byteOffset " + std::to_string(first) + " and byteLength " + std::to_string(size) + " leave the " +
-              std::to_string(data.size()) + " bytes of the buffer");
-  return {data.data() + first, size};
-}
-
-GltfBytes GltfDocument::resource(const Field& uri) const {
-  const std::string text = uri.text();
-  if (text.starts_with("data:")) {
-    const std::size_t comma = text.find(',');
-    return fromBase64(uri, comma == std::string::npos ? "" : std::string_view(text).substr(comma + 1));
-  }
-  const std::string name = folder.string() + "/" + percentDecoded(text);
-  std::error_code error;
-  const fs::path relative = fs::weakly_canonical(name, error).lexically_relative(folder);
-  if (error || relative.empty() || *relative.begin() == "..")
-    uri.fail("\"" + text + "\" leaves the file's folder");
-  return readFile(name, [&](const std::string& sentence) { uri.fail(sentence); });
+GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
+  const tinygltf::BufferView& view =
+      model.bufferViews[index(viewIndex, model.bufferViews.size(), field + ".bufferView", "buffer views")];
+  const std::string name = "bufferViews[" + std::to_string(viewIndex) + "]";
+  const auto& data = model.buffers[index(view.buffer, model.buffers.size(), name + ".buffer", "buffers")].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+    fail(name, "byteOffset " + std::to_string(view.byteOffset) + " and byteLength " +
+                   std::to_string(view.byteLength) + " leave the " + std::to_string(data.size()) +
+                   " bytes of buffers[" + std::to_string(view.buffer) + "]");
+  return {data.data() + view.byteOffset, view.byteLength};
 }
 
 GltfDocument readGltf(const fs::path& path) {
   GltfDocument document;
   document.file = path.string();
-  const Container container = containerOf(document.file, readFile(path, [&](const std::string& sentence) {
-    throw InputError(path.string(), "", sentence);
-  }));
+  std::vector<unsigned char> bytes;
+  if (const std::optional<std::string> why = readFile(path, bytes)) document.fail("", *why);
+  const std::string_view text = jsonText(document.file, bytes);
+  document.json = parseGltfJson(document.file, text);
+
+  Session session;
   std::error_code error;
-  document.folder = fs::canonical(path, error).parent_path();
-  document.json = parseJson(document.file, container.json);
-  const Field root = document.root();
-  const Field version = root["asset"]["version"];
-  if (!version.text().starts_with("2.")) version.fail(version.shown() + " is not 2.x");
-  if (const auto required = root.find("extensionsRequired"))
-    for (const Field& name : required->items())
-      if (!kRead.count(name.text()) && !kHarmless.count(name.text()))
-        required->fail("\"" + name.text() + "\" is not supported");
-  for (const char* name : kLists)
-    if (const auto list = root.find(name)) document.lists[name] = list->items();
-  if (const auto punctual = extensionOf(root, "KHR_lights_punctual"))
-    document.lists["lights"] = (*punctual)["lights"].items();
-  if (const auto list = root.find("buffers")) {
-    for (const Field& buffer : list->items())
-      document.buffers.push_back(readBuffer(document, buffer, container.binary));
-    document.lists["buffers"] = list->items();
+  session.folder = fs::canonical(path, error).parent_path();
+  checkBuffers(document, session, isBinary(bytes) ? binaryBytes(bytes, text) : 0);
+  bytes = withJson(std::move(bytes), text.size(), forTinyGltf(document.json).dump());
+  tinygltf::TinyGLTF loader;
+  loader.SetFsCallbacks(fileAccess(session));
+  loader.SetImageLoader(keepImage, &session);
+  std::string problems, warnings;
+  bool loaded = false;
+  try {
+    const auto size = static_cast<unsigned int>(bytes.size());
+    const std::string folder = session.folder.string();
+    loaded =
+        isBinary(bytes)
+            ? loader.LoadBinaryFromMemory(&document.model, &problems, &warnings, bytes.data(), size, folder)
+            : loader.LoadASCIIFromString(&document.model, &problems, &warnings,
+                                         reinterpret_cast<const char*>(bytes.data()), size, folder);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    problems = e.what();
   }
+  if (!session.refusal.empty()) document.fail("", session.refusal);
+  // Some mistakes only leave a message, and the object out.
+  if (!loaded || !problems.empty()) document.fail("", sentenceOf(problems));
+  if (document.model.asset.version.rfind("2.", 0) != 0)
+    document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
+  document.images = std::move(session.images);
+  document.images.resize(document.model.images.size());
   return document;
 }
 

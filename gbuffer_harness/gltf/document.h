@@ -1,64 +1,50 @@
-// A glTF file: its JSON, whose fields are checked where they are read, and the bytes that it refers to.
+// A glTF file parsed by tinygltf, with what it refers to in memory and nothing of it trusted. Its JSON is
+// checked before anything else reads it, and made ready for tinygltf.
 #pragma once
 
+#include <tiny_gltf.h>
+
 #include <filesystem>
-#include <functional>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "capture/json_field.h"
-
 namespace pellucid::harness {
 
-using GltfBytes = std::vector<unsigned char>;
+using GltfJson = nlohmann::json;
 
 // True if files that use the extension are drawn as the extension asks.
 bool isDrawn(const std::string& extension);
 
-// The extension of that name; nothing: `object` does not have it.
-std::optional<Field> extensionOf(const Field& object, const char* name);
-
-// The object's name; nothing where it is empty.
-std::optional<std::string> nameOf(const Field& object);
-
-inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-// A number of an object, which is `absent` where the object lacks the key.
-double numberOr(const Field& object, const char* key, double absent, double least, double most);
+// The extension of that name; NULL: `value` does not have it as an object.
+const GltfJson* extensionOf(const GltfJson& value, const char* name);
 
 struct GltfDocument {
   std::string file;  // for messages
-  std::filesystem::path folder;  // canonical
-  nlohmann::json json;
-  std::map<std::string, std::vector<Field>, std::less<>> lists;  // elements of "nodes" and its like, of "lights"
-  std::vector<GltfBytes> buffers;
+  GltfJson json;     // the whole file's; the model is without animations and skins
+  tinygltf::Model model;
+  std::vector<std::vector<unsigned char>> images;  // encoded, for those with a URI; as model.images
 
-  Field root() const { return {file, json}; }
+  // Throws InputError: file, field, sentence.
+  [[noreturn]] void fail(const std::string& field, const std::string& sentence) const;
 
-  // The elements of a list; none where the file lacks the list.
-  const std::vector<Field>& list(const char* name) const;
-
-  // The index that a field holds, and the element there. Throws InputError: "nodes[3].mesh: 7 is not one of the 2
-  // meshes".
-  std::size_t index(const char* list, const Field& field) const;
-  const Field& element(const char* name, const Field& field) const { return list(name)[index(name, field)]; }
-
-  // The bytes of the buffer view whose index a field holds, all of them inside the view's buffer.
+  // The bytes of a buffer view, all of them inside its buffer. `field` is what refers to the view.
   struct Bytes {
     const unsigned char* data;
     std::size_t size;
   };
-  Bytes bufferView(const Field& field) const;
+  Bytes bufferView(int index, const std::string& field) const;
 
-  // The bytes of a URI: base64 data, or a file in the folder of the document or below.
-  GltfBytes resource(const Field& uri) const;
+  // Throws InputError unless 0 <= index < size; "nodes[3].mesh: 7 is not one of the 2 meshes".
+  std::size_t index(int index, std::size_t size, const std::string& field, const char* plural) const;
+
+  // A property of `field`'s object as an index; beyond 2^30 it is 2^30, which no list has. Throws InputError where
+  // the property is missing or no integer >= 0.
+  int reference(const GltfJson& object, const char* key, const std::string& field) const;
 };
 
-// Throws InputError for files that are not glTF 2.0, truncated or larger than 1 GiB, and for URIs that leave the
-// file's folder.
+// Throws InputError for files that are not glTF 2.0, truncated, nested too deeply or larger than 1 GiB, and
+// for URIs that leave the file's folder.
 GltfDocument readGltf(const std::filesystem::path& path);
 
 }  // namespace pellucid::harness

@@ -87,35 +87,34 @@ struct PlacedNode {
 // Every node of the default scene, parents before children. Throws InputError when a
 // transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
 std::vector<PlacedNode> placeNodes(const GltfDocument& document) {
-  const std::vector<Field>& scenes = document.list("scenes");
-  if (scenes.empty()) document.root()["scenes"].fail("has none: there is nothing to draw");
-  const auto chosen = document.root().find("scene");
+  const tinygltf::Model& model = document.model;
+  if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
+  const std::size_t scene =
+      model.defaultScene < 0 ? 0 : document.index(model.defaultScene, model.scenes.size(), "scene", "scenes");
   struct Pending {
     std::size_t node;
     glm::dmat4 worldFromParent;
   };
   std::vector<Pending> pending;
   std::vector<PlacedNode> placed;
-  std::vector<bool> reached(document.list("nodes").size(), false);
-  const auto push = [&](const std::optional<Field>& list, const glm::dmat4& world) {
-    if (!list) return;
+  std::vector<bool> reached(model.nodes.size(), false);
+  const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, const std::string& field) {
     // Backwards, so that the stack gives them in the file's order.
-    const std::vector<Field> nodes = list->items();
     for (auto i = nodes.rbegin(); i != nodes.rend(); ++i) {
-      const std::size_t node = document.index("nodes", *i);
-      if (reached[node]) list->fail("nodes[" + std::to_string(node) + "] is reached twice; nodes have to form a tree");
+      const std::size_t node = document.index(*i, model.nodes.size(), field, "nodes");
+      if (reached[node])
+        document.fail(field, "nodes[" + std::to_string(*i) + "] is reached twice; nodes have to form a tree");
       reached[node] = true;
       pending.push_back({node, world});
     }
   };
-  push((chosen ? document.element("scenes", *chosen) : scenes.front()).find("nodes"), glm::dmat4(1));
+  push(model.scenes[scene].nodes, glm::dmat4(1), "scenes[" + std::to_string(scene) + "].nodes");
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();
-    const Field& node = document.list("nodes")[next.node];
-    const glm::dmat4 world = next.worldFromParent * parentFromNode(node);
+    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, next.node);
     placed.push_back({next.node, world});
-    push(node.find("children"), world);
+    push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
   return placed;
 }
@@ -139,9 +138,8 @@ struct Drawn {
   std::optional<std::uint32_t> colored, reflecting;
 };
 
-bool isBound(const Field& primitive) {
-  const Field attributes = primitive["attributes"];
-  return attributes.has("JOINTS_0") && attributes.has("WEIGHTS_0");
+bool isBound(const tinygltf::Primitive& primitive) {
+  return primitive.attributes.count("JOINTS_0") && primitive.attributes.count("WEIGHTS_0");
 }
 
 class Loader {
@@ -153,10 +151,11 @@ public:
 private:
   void sayIgnored();
   void addMesh(std::size_t node, const glm::dmat4& world);
-  void addPrimitive(const Field& primitive, const MeshPose& pose, std::uint32_t object);
+  void addPrimitive(const tinygltf::Primitive& primitive, const std::string& field, const MeshPose& pose,
+                    std::uint32_t object);
   void addCamera(std::size_t node, const glm::dmat4& world);
   void addLight(std::size_t node, const glm::dmat4& world);
-  Drawn& read(std::optional<std::size_t> material);
+  Drawn& read(int material);
   std::uint8_t indexOf(const MaterialSource& medium, const std::string& name);
   std::uint32_t surfaceOf(Drawn& drawn, bool hasVertexColors);
   int textureOf(const std::optional<TextureUse>& use, bool isNormalMap);
@@ -167,26 +166,26 @@ private:
   GltfScene scene_;
   std::vector<std::optional<glm::dmat4>> worldFromNode_;  // of the nodes in the scene
   std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
-  std::map<std::optional<std::size_t>, Drawn> drawn_;     // by glTF material
+  std::map<int, Drawn> drawn_;                    // by glTF material
   std::vector<PellucidMaterial> compiled_;        // of scene_.model.materials
-  std::map<std::pair<std::size_t, bool>, int> textures_;  // by glTF texture and whether it is a normal map
+  std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
 };
 
 void Loader::sayIgnored() {
-  const auto used = document_.root().find("extensionsUsed");
-  for (const Field& name : used ? used->items() : std::vector<Field>())
-    if (!isDrawn(name.text())) scene_.warnings.push_back("extension " + name.text() + " is ignored");
+  for (const std::string& name : document_.model.extensionsUsed)
+    if (!isDrawn(name)) scene_.warnings.push_back("extension " + name + " is ignored");
 }
 
 void Loader::checkPresetNames() {
   std::vector<std::string>& names = scene_.materialNames;
-  for (std::size_t i = 0; i < document_.list("materials").size(); ++i) names.push_back(materialName(document_, i));
-  names.push_back(materialName(document_, std::nullopt));
+  for (std::size_t i = 0; i < document_.model.materials.size(); ++i)
+    names.push_back(materialName(document_, static_cast<int>(i)));
+  names.push_back(materialName(document_, -1));
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   for (const auto& [name, preset] : options_.presets)
     if (name != "*" && std::find(names.begin(), names.end(), name) == names.end())
-      throw InputError(document_.file, "materials", "none is named \"" + name + "\"; there are " + list);
+      document_.fail("materials", "none is named \"" + name + "\"; there are " + list);
 }
 
 // Into Model::textures; -1 without one.
@@ -196,7 +195,7 @@ int Loader::textureOf(const std::optional<TextureUse>& use, bool isNormalMap) {
   const auto [entry, isNew] =
       textures_.try_emplace({use->texture, isNormalMap}, static_cast<int>(textures.size()));
   if (isNew) {
-    textures.push_back(readTexture(document_, use->texture));
+    textures.push_back(readTexture(document_, use->texture, use->field + ".index"));
     textures.back().isNormalMap = isNormalMap;
   }
   return entry->second;
@@ -207,14 +206,13 @@ std::uint8_t Loader::indexOf(const MaterialSource& medium, const std::string& na
   const PellucidMaterial compiled = compileMaterial(medium, document_.file + ": material \"" + name + "\"");
   for (std::size_t i = 0; i < compiled_.size(); ++i)
     if (std::memcmp(&compiled_[i], &compiled, sizeof compiled) == 0) return static_cast<std::uint8_t>(i + 1);
-  if (compiled_.size() == kMaxMaterials) 
-    throw InputError(document_.file, "materials", "more than 255 of them are translucent");
+  if (compiled_.size() == kMaxMaterials) document_.fail("materials", "more than 255 of them are translucent");
   compiled_.push_back(compiled);
   scene_.model.materials.push_back(medium);
   return static_cast<std::uint8_t>(compiled_.size());
 }
 
-Drawn& Loader::read(std::optional<std::size_t> material) {
+Drawn& Loader::read(int material) {
   if (const auto known = drawn_.find(material); known != drawn_.end()) return known->second;
   Model& model = scene_.model;
   GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
@@ -255,28 +253,35 @@ std::uint32_t Loader::surfaceOf(Drawn& drawn, bool hasVertexColors) {
 }
 
 void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
-  const Field& source = document_.list("nodes")[node];
-  const Field& mesh = document_.element("meshes", source["mesh"]);
+  const tinygltf::Node& source = document_.model.nodes[node];
+  const std::string nodeName = "nodes[" + std::to_string(node) + "]";
+  const std::size_t index =
+      document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
+  const tinygltf::Mesh& mesh = document_.model.meshes[index];
   MeshPose pose;
+  pose.weights = source.weights.empty() ? mesh.weights : source.weights;
+  if (source.skin != -1) pose.joints = readJoints(document_, source.skin, worldFromNode_, nodeName + ".skin");
   pose.worldFromMesh = world;
-  for (const Field& weighted : {source, mesh})
-    if (const auto weights = weighted.find("weights"); weights && pose.weights.empty()) pose.weights = weights->numbers();
-  const auto skin = source.find("skin");
-  if (skin) pose.joints = readJoints(document_, *skin, worldFromNode_);
-  for (const Field& primitive : mesh["primitives"].items()) {
-    if (skin && !isBound(primitive))
-      skin->fail(primitive.path() + " has no JOINTS_0 and WEIGHTS_0 by which it would be bound; bake the pose");
-    addPrimitive(primitive, pose, static_cast<std::uint32_t>(node));
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
+    if (source.skin != -1 && !isBound(mesh.primitives[i]))
+      document_.fail(nodeName + ".skin",
+                     field + " has no JOINTS_0 and WEIGHTS_0 by which it would be bound; bake the pose");
+    addPrimitive(mesh.primitives[i], field, pose, static_cast<std::uint32_t>(node));
   }
 }
 
-void Loader::addPrimitive(const Field& primitive, const MeshPose& pose, std::uint32_t object) {
+void Loader::addPrimitive(const tinygltf::Primitive& primitive, const std::string& field,
+                          const MeshPose& pose, std::uint32_t object) {
   Model& model = scene_.model;
-  const auto material = primitive.find("material");
-  Drawn& drawn = read(material ? std::optional(document_.index("materials", *material)) : std::nullopt);
+  if (primitive.material != -1)
+    document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
+  Drawn& drawn = read(primitive.material);
   const auto first = static_cast<std::uint32_t>(model.indices.size());
   const auto firstVertex = static_cast<std::ptrdiff_t>(model.vertices.size());
-  if (!appendPrimitive(document_, primitive, pose, drawn.texCoords, model, positions_, scene_.warnings)) return;
+  if (!appendPrimitive(document_, primitive, field, pose, drawn.texCoords, model, positions_,
+                       scene_.warnings))
+    return;
   const bool hasVertexColors = std::any_of(model.vertices.begin() + firstVertex, model.vertices.end(),
                                            [](const Vertex& v) { return v.color != Vertex{}.color; });
   const std::uint32_t surface = surfaceOf(drawn, hasVertexColors);
@@ -284,53 +289,70 @@ void Loader::addPrimitive(const Field& primitive, const MeshPose& pose, std::uin
 }
 
 void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
-  constexpr double kMost = 1e18;
-  const Field& source = document_.list("nodes")[node];
-  const Field& camera = document_.element("cameras", source["camera"]);
+  const tinygltf::Node& source = document_.model.nodes[node];
+  const std::size_t index = document_.index(source.camera, document_.model.cameras.size(),
+                                            "nodes[" + std::to_string(node) + "].camera", "cameras");
+  const tinygltf::Camera& camera = document_.model.cameras[index];
+  const std::string field = "cameras[" + std::to_string(index) + "]";
+  const auto require = [&](bool holds, const char* key, double value, const char* range) {
+    if (!holds) document_.fail(field + key, std::to_string(value) + " is not " + range);
+  };
   ModelCamera result;
-  result.name = nameOf(camera).value_or(nameOf(source).value_or(camera.path()));
-  result.orthographic = camera["type"].choice({"perspective", "orthographic"}) == 1;
-  const Field lens = camera[result.orthographic ? "orthographic" : "perspective"];
-  const double nearPlane = lens["znear"].number(0, kMost), farPlane = numberOr(lens, "zfar", kUnbounded, 0, kMost);
-  if (!(farPlane > nearPlane)) lens["zfar"].fail(lens["zfar"].shown() + " is not > znear");
-  result.range = {nearPlane, farPlane, true};
+  result.name = !camera.name.empty() ? camera.name : !source.name.empty() ? source.name : field;
+  result.orthographic = camera.type == "orthographic";
   if (result.orthographic) {
-    constexpr double kLeast = 1e-18;
-    result.height = 2 * lens["ymag"].number(kLeast, kMost);
-    result.aspect = lens["xmag"].number(kLeast, kMost) / lens["ymag"].number();
-    lens["zfar"].number();
+    const tinygltf::OrthographicCamera& o = camera.orthographic;
+    require(o.ymag > 0 && o.ymag < 1e18, ".orthographic.ymag", o.ymag, "> 0");
+    require(o.znear >= 0 && o.znear < 1e18, ".orthographic.znear", o.znear, ">= 0");
+    require(o.zfar > o.znear && o.zfar < 1e18, ".orthographic.zfar", o.zfar, "> znear");
+    result.height = 2 * o.ymag;
+    if (o.xmag > 0 && o.xmag < 1e18) result.aspect = o.xmag / o.ymag;
+    result.range = {o.znear, o.zfar, true};
   } else {
-    result.verticalFov = lens["yfov"].number(0, std::numbers::pi);
-    if (!(result.verticalFov > 0 && result.verticalFov < std::numbers::pi)) lens["yfov"].fail("is not within 0 .. pi");
-    if (!(nearPlane > 0)) lens["znear"].fail("is not > 0");
-    result.aspect = numberOr(lens, "aspectRatio", 0, 0, kMost);
+    const tinygltf::PerspectiveCamera& p = camera.perspective;
+    require(p.yfov > 0 && p.yfov < std::numbers::pi, ".perspective.yfov", p.yfov, "within 0 .. pi");
+    require(p.znear > 0 && p.znear < 1e18, ".perspective.znear", p.znear, "> 0");
+    require(p.zfar == 0 || (p.zfar > p.znear && p.zfar < 1e18), ".perspective.zfar", p.zfar, "> znear");
+    result.verticalFov = p.yfov;
+    require(p.aspectRatio >= 0 && p.aspectRatio < 1e18, ".perspective.aspectRatio", p.aspectRatio, "> 0");
+    result.aspect = p.aspectRatio;
+    result.range = {p.znear, p.zfar > 0 ? p.zfar : std::numeric_limits<double>::infinity(), true};
   }
   const Frame frame = frameOf(world);
   if (!(glm::length(frame.backward) > 0))
-    source.fail("a camera is scaled by 0");
+    document_.fail("nodes[" + std::to_string(node) + "]", "a camera is scaled by 0");
   result.viewFromWorld = lookAt(fromGlm(frame.position),
                                 fromGlm(frame.position - glm::normalize(frame.backward)), fromGlm(frame.up));
   scene_.model.cameras.push_back(result);
 }
 
 void Loader::addLight(std::size_t node, const glm::dmat4& world) {
-  const auto extension = extensionOf(document_.list("nodes")[node], "KHR_lights_punctual");
-  if (!extension) return;
-  const Field& source = document_.element("lights", (*extension)["light"]);
+  const auto& extensions = document_.model.nodes[node].extensions;
+  const auto extension = extensions.find("KHR_lights_punctual");
+  if (extension == extensions.end()) return;
+  const std::string reference = "nodes[" + std::to_string(node) + "].extensions.KHR_lights_punctual.light";
+  if (!extension->second.IsObject() || !extension->second.Get("light").IsInt())
+    document_.fail(reference, "is not an integer");
+  const std::size_t index = document_.index(extension->second.Get("light").GetNumberAsInt(),
+                                            document_.model.lights.size(), reference, "lights");
+  const tinygltf::Light& source = document_.model.lights[index];
+  const std::string field = "extensions.KHR_lights_punctual.lights[" + std::to_string(index) + "].";
   const auto fail = [&](const char* key, const std::string& sentence) {
-    throw InputError(document_.file, source.path() + "." + key, sentence);
+    document_.fail(field + key, sentence);
   };
-  constexpr double kMost = std::numeric_limits<float>::max();
-  constexpr PellucidLightType kTypes[] = {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT};
   Light light;
-  light.type = kTypes[source["type"].choice({"directional", "point", "spot"})];
-  if (const auto color = source.find("color")) light.color = color->numbers<3>();
-  light.intensity = numberOr(source, "intensity", 1, -kMost, kMost);
-  light.range = numberOr(source, "range", 0, -kMost, kMost);
+  const std::map<std::string, PellucidLightType> types = {{"directional", PELLUCID_LIGHT_DIRECTIONAL},
+                                                          {"point", PELLUCID_LIGHT_POINT},
+                                                          {"spot", PELLUCID_LIGHT_SPOT}};
+  if (!types.count(source.type)) fail("type", "is not directional, point or spot");
+  light.type = types.at(source.type);
+  if (!source.color.empty() && source.color.size() != 3) fail("color", "is not 3 numbers");
+  std::copy(source.color.begin(), source.color.end(), light.color.begin());
+  light.intensity = source.intensity;
+  light.range = source.range;
   if (light.type == PELLUCID_LIGHT_SPOT) {
-    const Field spot = source["spot"];
-    light.innerConeAngle = numberOr(spot, "innerConeAngle", 0, -kMost, kMost);
-    light.outerConeAngle = numberOr(spot, "outerConeAngle", std::numbers::pi / 4, -kMost, kMost);
+    light.innerConeAngle = source.spot.innerConeAngle;
+    light.outerConeAngle = source.spot.outerConeAngle;
   }
   const Frame frame = frameOf(world);
   if (!(glm::length(frame.backward) > 0)) fail("direction", "is not defined: its node is scaled by 0");
@@ -346,16 +368,16 @@ GltfScene Loader::load() {
   model.metersPerUnit = options_.metersPerUnit;
   sayIgnored();
   checkPresetNames();
-  worldFromNode_.resize(document_.list("nodes").size());
+  worldFromNode_.resize(document_.model.nodes.size());
   const std::vector<PlacedNode> placed = placeNodes(document_);
   for (const auto& [node, world] : placed) worldFromNode_[node] = world;
   for (const auto& [node, world] : placed) {
-    const Field& source = document_.list("nodes")[node];
-    if (source.has("mesh")) addMesh(node, world);
-    if (source.has("camera")) addCamera(node, world);
+    const tinygltf::Node& source = document_.model.nodes[node];
+    if (source.mesh != -1) addMesh(node, world);
+    if (source.camera != -1) addCamera(node, world);
     addLight(node, world);
   }
-  if (model.indices.empty()) throw InputError(document_.file, "meshes", "the scene has no triangles");
+  if (model.indices.empty()) document_.fail("meshes", "the scene has no triangles");
   if (moveOrigin(model, positions_, options_.camera)) scene_.notes.push_back(originNote(model));
   return std::move(scene_);
 }

@@ -8,7 +8,6 @@
 
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
-#include "common/error.h"
 #include "common/parse.h"
 #include "pellucid/pellucid_material.h"
 
@@ -25,6 +24,7 @@ struct Scattering {
 
 using Rgb = std::array<double, 3>;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
                      *kTransmission = "KHR_materials_transmission", *kVolume = "KHR_materials_volume",
@@ -48,24 +48,77 @@ bool isBlack(const Rgb& color) {
   return std::all_of(color.begin(), color.end(), [](double v) { return v == 0; });
 }
 
-Rgb colorOr(const Field& object, const char* key, const Rgb& absent) {
+// The texture of an object in the file's JSON, as "baseColorTexture" of pbrMetallicRoughness; nothing without
+// one.
+std::optional<TextureUse> readTextureUse(const GltfDocument& document, const GltfJson& object,
+                                         const char* key, const std::string& field) {
   const auto found = object.find(key);
-  return found ? found->numbers<3>(0, 1) : absent;
+  if (found == object.end()) return std::nullopt;
+  TextureUse use;
+  use.field = field + "." + key;
+  const auto index = found->is_object() ? found->find("index") : found->end();
+  if (!found->is_object() || index == found->end() || !index->is_number_unsigned())
+    document.fail(use.field + ".index", "is missing or not an integer >= 0");
+  use.texture = static_cast<int>(std::min<std::uint64_t>(index->get<std::uint64_t>(), 1u << 30));
+  use.coord = readTexCoord(document, *found, use.field);
+  return use;
 }
+
+// The numbers of one extension object.
+class Extension {
+public:
+  Extension(const GltfDocument& document, std::string field, const GltfJson& value)
+      : document_(document), field_(std::move(field)), value_(value) {}
+
+  double number(const char* key, double absent, double least, double most) const {
+    const auto found = value_.find(key);
+    return found == value_.end() ? absent : checked(key, *found, least, most);
+  }
+  Rgb color(const char* key, const Rgb& absent) const {
+    const auto found = value_.find(key);
+    if (found == value_.end()) return absent;
+    if (!found->is_array() || found->size() != 3)
+      document_.fail(field_ + "." + key, "is not an array of 3 numbers");
+    Rgb rgb;
+    for (std::size_t i = 0; i < 3; ++i) rgb[i] = checked(key, (*found)[i], 0, 1);
+    return rgb;
+  }
+  bool has(const char* key) const { return value_.contains(key); }
+  std::optional<TextureUse> texture(const char* key) const {
+    return readTextureUse(document_, value_, key, field_);
+  }
+  const std::string& field() const { return field_; }
+
+private:
+  double checked(const char* key, const GltfJson& value, double least, double most) const {
+    if (!value.is_number()) document_.fail(field_ + "." + key, "is not a number");
+    const double number = value;
+    if (!(number >= least && number <= most)) {
+      const std::string range = most < kInfinity ? std::to_string(least) + " .. " + std::to_string(most)
+                                                 : std::to_string(least) + " upwards";
+      document_.fail(field_ + "." + key, std::to_string(number) + " is outside " + range);
+    }
+    return number;
+  }
+
+  const GltfDocument& document_;
+  std::string field_;
+  const GltfJson& value_;
+};
 
 void multiply(Rgb& color, const Rgb& by) {
   for (std::size_t i = 0; i < 3; ++i) color[i] *= by[i];
 }
 void scale(Rgb& color, double by) { multiply(color, {by, by, by}); }
 
-// Reads the extensions of one material, and gives its surface, which has the base color, its lobes. Adds a sentence
-// to `warnings` for a property by which a scattering material ends up black, opaque or otherwise than asked.
+// Reads the extensions of one material.
 class Reader {
 public:
-  Reader(const GltfDocument& document, const Field& material, const std::string& name, double metersPerUnit,
+  Reader(const GltfDocument& document, std::size_t material, const std::string& name, double metersPerUnit,
          Surface& surface, std::vector<std::string>& warnings)
       : document_(document),
-        material_(material),
+        json_(document.json["materials"][material]),
+        field_("materials[" + std::to_string(material) + "]"),
         name_(name),
         metersPerUnit_(metersPerUnit),
         surface_(surface),
@@ -74,7 +127,14 @@ public:
   Scattering read();
 
 private:
-  std::optional<Field> find(const char* extension) const { return extensionOf(material_, extension); }
+  std::optional<Extension> find(const char* extension) const {
+    const auto extensions = json_.find("extensions");
+    if (extensions == json_.end() || !extensions->contains(extension)) return std::nullopt;
+    const std::string field = field_ + ".extensions." + extension;
+    const GltfJson& value = (*extensions)[extension];
+    if (!value.is_object()) document_.fail(field, "is not an object");
+    return Extension(document_, field, value);
+  }
   void warn(const std::string& sentence) { warnings_.push_back("material \"" + name_ + "\": " + sentence); }
   void readVolume();
   void setMap(const std::vector<std::optional<TextureUse>>& colors,
@@ -85,28 +145,28 @@ private:
   void setThinWall();
   void setAbsorbing();
   void setScattering(const Rgb& multiscatter, double g, double ior);
-  void readDiffuse(const Field& diffuse);
-  void readVolumeScatter(const Field& scatter, const std::optional<Field>& diffuse);
+  void readDiffuse(const Extension& diffuse);
+  void readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse);
 
   const GltfDocument& document_;
-  const Field& material_;
-  std::string name_;
+  const GltfJson& json_;
+  std::string field_, name_;
   double metersPerUnit_;
   Surface& surface_;
   std::vector<std::string>& warnings_;
   Scattering result_;
   bool isVolume_ = false;  // KHR_materials_volume with a thickness
-  double distance_ = kUnbounded;
+  double distance_ = kInfinity;
   Rgb attenuation_ = {1, 1, 1};
 };
 
 void Reader::readVolume() {
   const auto volume = find(kVolume);
   if (!volume) return;
-  isVolume_ = numberOr(*volume, "thicknessFactor", 0, 0, kUnbounded) > 0;
-  distance_ = numberOr(*volume, "attenuationDistance", kUnbounded, 0, kUnbounded);
-  attenuation_ = colorOr(*volume, "attenuationColor", attenuation_);
-  if (!(distance_ > 0)) (*volume)["attenuationDistance"].fail("is 0");
+  isVolume_ = volume->number("thicknessFactor", 0, 0, kInfinity) > 0;
+  distance_ = volume->number("attenuationDistance", kInfinity, 0, kInfinity);
+  attenuation_ = volume->color("attenuationColor", attenuation_);
+  if (!(distance_ > 0)) document_.fail(volume->field() + ".attenuationDistance", "is 0");
   if (!isVolume_) warn("KHR_materials_volume.thicknessFactor is 0, which means a thin wall without a medium");
 }
 
@@ -121,7 +181,7 @@ Rgb Reader::extinction() const {
 
 double Reader::boundaryIor() const {
   const auto ior = find(kIor);
-  return ior ? std::max(numberOr(*ior, "ior", 1.5, 0, 3), 1.0) : 1.5;
+  return ior ? std::max(ior->number("ior", 1.5, 0, 3), 1.0) : 1.5;
 }
 
 void Reader::setMap(const std::vector<std::optional<TextureUse>>& colors,
@@ -141,7 +201,7 @@ void Reader::setThinWall() {
 // Light enters and leaves diffusely and is only absorbed on the way: T = e^{-sigma_a d}, in the color of the
 // lobe.
 void Reader::setAbsorbing() {
-  const Rgb sigma = distance_ < kUnbounded ? extinction() : Rgb{};
+  const Rgb sigma = distance_ < kInfinity ? extinction() : Rgb{};
   BurleyMaterial medium{{kNoDiffusion, kNoDiffusion, kNoDiffusion}, {{}}};
   for (std::size_t i = 0; i < 3; ++i)
     (*medium.transmittance)[i] = {1, std::max(sigma[i], kSlowestDecay), 0, kSlowestDecay};
@@ -164,28 +224,27 @@ void Reader::setScattering(const Rgb& multiscatter, double g, double ior) {
 }
 
 // The light that does not enter is reflected with the base color.
-void Reader::readDiffuse(const Field& diffuse) {
-  const double factor = numberOr(diffuse, "diffuseTransmissionFactor", 0, 0, 1);
-  surface_.addedColor = colorOr(diffuse, "diffuseTransmissionColorFactor", {1, 1, 1});
+void Reader::readDiffuse(const Extension& diffuse) {
+  const double factor = diffuse.number("diffuseTransmissionFactor", 0, 0, 1);
+  surface_.addedColor = diffuse.color("diffuseTransmissionColorFactor", {1, 1, 1});
   if (factor == 0) warn("diffuseTransmissionFactor is 0, its default: no light comes through");
   if (isBlack(surface_.addedColor)) warn("diffuseTransmissionColorFactor is black: no light comes through");
   if (factor == 0) {
     surface_.addedColor = {0, 0, 0};
     return;
   }
-  setMap({readTextureUse(document_, diffuse, "diffuseTransmissionColorTexture")},
-         readTextureUse(document_, diffuse, "diffuseTransmissionTexture"));
+  setMap({diffuse.texture("diffuseTransmissionColorTexture")}, diffuse.texture("diffuseTransmissionTexture"));
   scale(surface_.addedColor, factor);
   surface_.displaced = factor;
   isVolume_ ? setAbsorbing() : setThinWall();
 }
 
-void Reader::readVolumeScatter(const Field& scatter, const std::optional<Field>& diffuse) {
+void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse) {
   // The name before the extension was ratified.
   const bool old = scatter.has("multiscatterColor") && !scatter.has("multiscatterColorFactor");
-  const Rgb multiscatter = colorOr(scatter, old ? "multiscatterColor" : "multiscatterColorFactor", {0, 0, 0});
-  const double g = numberOr(scatter, "scatterAnisotropy", 0, -kLargestG, kLargestG);
-  if (!isVolume_ || !(distance_ < kUnbounded)) {
+  const Rgb multiscatter = scatter.color(old ? "multiscatterColor" : "multiscatterColorFactor", {0, 0, 0});
+  const double g = scatter.number("scatterAnisotropy", 0, -kLargestG, kLargestG);
+  if (!isVolume_ || !(distance_ < kInfinity)) {
     warn(
         "KHR_materials_volume_scatter needs KHR_materials_volume with thicknessFactor > 0 and a finite "
         "attenuationDistance; it is drawn opaque");
@@ -195,12 +254,12 @@ void Reader::readVolumeScatter(const Field& scatter, const std::optional<Field>&
   std::optional<TextureUse> strength, color;
   surface_.addedColor = {1, 1, 1};
   if (diffuse) {
-    entering = numberOr(*diffuse, "diffuseTransmissionFactor", 0, 0, 1);
-    surface_.addedColor = colorOr(*diffuse, "diffuseTransmissionColorFactor", {1, 1, 1});
-    strength = readTextureUse(document_, *diffuse, "diffuseTransmissionTexture");
-    color = readTextureUse(document_, *diffuse, "diffuseTransmissionColorTexture");
+    entering = diffuse->number("diffuseTransmissionFactor", 0, 0, 1);
+    surface_.addedColor = diffuse->color("diffuseTransmissionColorFactor", {1, 1, 1});
+    strength = diffuse->texture("diffuseTransmissionTexture");
+    color = diffuse->texture("diffuseTransmissionColorTexture");
   } else if (const auto transmission = find(kTransmission)) {
-    entering = numberOr(*transmission, "transmissionFactor", 0, 0, 1);
+    entering = transmission->number("transmissionFactor", 0, 0, 1);
   }
   if (entering == 0) {
     entering = 1;
@@ -213,7 +272,7 @@ void Reader::readVolumeScatter(const Field& scatter, const std::optional<Field>&
          (old ? "multiscatterColor" : "multiscatterColorFactor") + " is black: the medium only absorbs");
   else if (isBlack(surface_.addedColor))
     warn("diffuseTransmissionColorFactor is black: no light comes back from the medium");
-  const auto scatterTexture = readTextureUse(document_, scatter, "multiscatterColorTexture");
+  const auto scatterTexture = scatter.texture("multiscatterColorTexture");
   setMap({scatterTexture}, std::nullopt);
   setScattering(multiscatter, g, diffuse ? 1 : boundaryIor());
   setMap({color, scatterTexture}, strength);
@@ -252,6 +311,14 @@ Scattering thinWall(const std::array<double, 3>& transmittance, Surface& surface
   return {ThinWallMaterial{kHalf, kHalf, {}}, {}};
 }
 
+// `name`: the material's, for warnings. `surface`: with the base color; gets its lobes. Adds a sentence to
+// `warnings` for a property by which a scattering material ends up black, opaque or otherwise than asked.
+// Throws InputError naming the field.
+Scattering readScattering(const GltfDocument& document, std::size_t material, const std::string& name,
+                          double metersPerUnit, Surface& surface, std::vector<std::string>& warnings) {
+  return Reader(document, material, name, metersPerUnit, surface, warnings).read();
+}
+
 // Base colors that nobody chose: glTF's default, and that of Blender's Principled BSDF, which its exporter
 // writes.
 constexpr double kDefaultBaseColors[] = {1, 0.8};
@@ -274,7 +341,8 @@ const std::string* presetFor(const std::string& name, const GltfOptions& options
 }
 
 // Reads "thin:R,G,B".
-std::optional<Rgb> thinTransmittance(const std::string& where, const std::string& text) {
+std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::string& name,
+                                     const std::string& text) {
   constexpr std::string_view kThin = "thin:";
   if (text.rfind(kThin, 0) != 0) return std::nullopt;
   const std::vector<std::string> parts = split(text.substr(kThin.size()), ',');
@@ -285,7 +353,8 @@ std::optional<Rgb> thinTransmittance(const std::string& where, const std::string
     isColor = color[c] >= 0 && color[c] <= 1;
   }
   if (!isColor)
-    throw InputError(where, "", "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
+    document.fail("material \"" + name + "\"",
+                  "\"" + text + "\" is not thin:R,G,B with a transmittance from 0 to 1 of each");
   return color;
 }
 
@@ -297,52 +366,55 @@ double singleScatteringAlbedo(double multiscatter) {
   return std::clamp(1 - s * s, 0.0, 1.0);
 }
 
-std::string materialName(const GltfDocument& document, std::optional<std::size_t> index) {
-  if (!index) return "default";
-  const Field& material = document.list("materials")[*index];
-  return nameOf(material).value_or(material.path());
+std::string materialName(const GltfDocument& document, int index) {
+  if (index < 0) return "default";
+  const std::string& name = document.model.materials[static_cast<std::size_t>(index)].name;
+  return name.empty() ? "materials[" + std::to_string(index) + "]" : name;
 }
 
-GltfMaterial readMaterial(const GltfDocument& document, std::optional<std::size_t> index,
-                          const GltfOptions& options, std::vector<std::string>& warnings) {
+GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOptions& options,
+                          std::vector<std::string>& warnings) {
   GltfMaterial result;
   const std::string name = materialName(document, index);
   const std::string* const preset = presetFor(name, options);
-  Surface& surface = result.surface;
-  surface.name = name;
-  if (index) {
-    const Field& material = document.list("materials")[*index];
-    double alpha = 1;
-    if (const auto metallic = material.find("pbrMetallicRoughness")) {
-      if (const auto factor = metallic->find("baseColorFactor")) {
-        const auto rgba = factor->numbers<4>(0, 1);
-        std::copy_n(rgba.begin(), 3, surface.baseColor.begin());
-        alpha = rgba[3];
-      }
-      result.color = readTextureUse(document, *metallic, "baseColorTexture");
+  result.surface.name = name;
+  if (index >= 0) {
+    const std::string field = "materials[" + std::to_string(index) + "]";
+    const tinygltf::Material& material = document.model.materials[static_cast<std::size_t>(index)];
+    const auto& factor = material.pbrMetallicRoughness.baseColorFactor;
+    if (factor.size() != 4 ||
+        !std::all_of(factor.begin(), factor.end(), [](double v) { return v >= 0 && v <= 1; }))
+      document.fail(field + ".pbrMetallicRoughness.baseColorFactor", "is not 4 numbers within 0 .. 1");
+    std::copy_n(factor.begin(), 3, result.surface.baseColor.begin());
+    result.surface.doubleSided = material.doubleSided;
+    if (material.alphaMode == "MASK") {
+      if (!(material.alphaCutoff >= 0 && std::isfinite(material.alphaCutoff)))
+        document.fail(field + ".alphaCutoff", std::to_string(material.alphaCutoff) + " is not >= 0");
+      // The factor multiplies the texel's alpha; 2 is above any of them.
+      result.surface.alphaCutoff = factor[3] > 0 ? std::min(material.alphaCutoff / factor[3], 2.0) : 2;
+    } else if (material.alphaMode == "BLEND") {
+      warnings.push_back("material \"" + name + "\": alphaMode BLEND is drawn opaque");
     }
-    if (const auto sides = material.find("doubleSided")) surface.doubleSided = sides->boolean();
-    const auto mode = material.find("alphaMode");
-    const std::size_t alphaMode = mode ? mode->choice({"OPAQUE", "MASK", "BLEND"}) : 0;
-    // The factor multiplies the texel's alpha; 2 is above any of them.
-    if (alphaMode == 1)
-      surface.alphaCutoff = alpha > 0 ? std::min(numberOr(material, "alphaCutoff", 0.5, 0, kUnbounded) / alpha, 2.0) : 2;
-    if (alphaMode == 2) warnings.push_back("material \"" + name + "\": alphaMode BLEND is drawn opaque");
-    result.normal = readTextureUse(document, material, "normalTexture");
-    if (result.normal)
-      surface.normalScale = numberOr(result.normal->info, "scale", 1, -kLargestNormalScale, kLargestNormalScale);
+    const GltfJson& json = document.json["materials"][static_cast<std::size_t>(index)];
+    result.color = readTextureUse(document, json.value("pbrMetallicRoughness", GltfJson::object()),
+                                  "baseColorTexture", field + ".pbrMetallicRoughness");
+    result.normal = readTextureUse(document, json, "normalTexture", field);
+    result.surface.normalScale = material.normalTexture.scale;
+    if (!(std::abs(result.surface.normalScale) <= kLargestNormalScale))
+      document.fail(field + ".normalTexture.scale",
+                    std::to_string(result.surface.normalScale) + " is outside -1000 .. 1000");
     if (!preset) {
-      Scattering scattering =
-          Reader(document, material, name, options.metersPerUnit, surface, warnings).read();
+      Scattering scattering = readScattering(document, static_cast<std::size_t>(index), name,
+                                             options.metersPerUnit, result.surface, warnings);
       result.medium = scattering.medium;
       result.lobeMap = std::move(scattering.map);
     }
   }
-  const std::string where = document.file + ": material \"" + name + "\"";
-  if (const auto transmittance = preset ? thinTransmittance(where, *preset) : std::nullopt) {
-    result.medium = thinWall(*transmittance, surface).medium;
+  if (const auto transmittance = preset ? thinTransmittance(document, name, *preset) : std::nullopt) {
+    result.medium = thinWall(*transmittance, result.surface).medium;
     return result;
   }
+  const std::string where = document.file + ": material \"" + name + "\"";
   if (preset) result.medium = parseMaterial(where, *preset);
   if (result.medium && options.ior > 0) result.medium = withIor(*result.medium, options.ior, where);
   if (preset) {

@@ -28,12 +28,12 @@ struct GltfMaterial {
   std::optional<std::array<double, 3>> reflectance;
 };
 
-// A material and what its extensions say, in Pellucid's terms; docs/captures.md. Without an index: the default
+// A material and what its extensions say, in Pellucid's terms; docs/captures.md. `index` -1: the default
 // material of glTF. Adds sentences to `warnings`.
-GltfMaterial readMaterial(const GltfDocument& document, std::optional<std::size_t> index,
-                          const GltfOptions& options, std::vector<std::string>& warnings);
+GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOptions& options,
+                          std::vector<std::string>& warnings);
 
-// Name by which options and messages know a material; "materials[i]" without a name.
-std::string materialName(const GltfDocument& document, std::optional<std::size_t> index);
+// Name by which options and messages know a material; "default" for -1, "materials[i]" without a name.
+std::string materialName(const GltfDocument& document, int index);
 
 }  // namespace pellucid::harness

@@ -24,20 +24,22 @@ struct Attributes {
 
 constexpr const char* kTransform = "KHR_texture_transform";
 
-void requireCount(const AccessorValues& values, const Attributes& attributes, const Field& field) {
+void requireCount(const GltfDocument& document, const AccessorValues& values, const Attributes& attributes,
+                  const std::string& field) {
   if (values.count() != attributes.count())
-    field.fail("have " + std::to_string(attributes.count()) + " and " + std::to_string(values.count()) +
-               " elements");
+    document.fail(field, "have " + std::to_string(attributes.count()) + " and " +
+                             std::to_string(values.count()) + " elements");
 }
 
 // Adds weight * the target's displacements.
-void morph(const GltfDocument& document, const Field& target, double weight, Attributes& attributes) {
+void morph(const GltfDocument& document, const std::map<std::string, int>& target, double weight,
+           const std::string& field, Attributes& attributes) {
   const auto add = [&](const char* name, AccessorValues& to) {
     const auto found = target.find(name);
-    if (!found) return;
+    if (found == target.end()) return;
     // A tangent's displacement has no w.
-    const AccessorValues by = readFloats(document, *found, 3, 3);
-    requireCount(by, attributes, *found);
+    const AccessorValues by = readFloats(document, found->second, 3, 3, field + "." + name);
+    requireCount(document, by, attributes, field + "." + name);
     for (std::size_t i = 0; i < by.count(); ++i)
       for (std::size_t c = 0; c < 3; ++c) {
         float& value = to.data[i * static_cast<std::size_t>(to.components) + c];
@@ -59,16 +61,20 @@ void transform(const glm::dmat3& matrix, AccessorValues& uv) {
 }
 
 // weights: of the morph targets; those that are missing are 0. Throws InputError naming the attribute or
-// accessor, or all attributes for counts that differ.
-Attributes readAttributes(const GltfDocument& document, const Field& primitive, const TexCoords& texCoords,
+// accessor, and `field`, the primitive, for counts that differ.
+Attributes readAttributes(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                          const std::string& field, const TexCoords& texCoords,
                           const std::vector<double>& weights) {
-  const Field given = primitive["attributes"];
+  const std::string where = field + ".attributes.";
   const auto find = [&](const std::string& name, int least, int most) -> std::optional<AccessorValues> {
-    const auto found = given.find(name.c_str());
-    return found ? std::optional(readFloats(document, *found, least, most)) : std::nullopt;
+    const auto found = primitive.attributes.find(name);
+    if (found == primitive.attributes.end()) return std::nullopt;
+    return readFloats(document, found->second, least, most, where + name);
   };
+  std::optional<AccessorValues> position = find("POSITION", 3, 3);
+  if (!position) document.fail(where + "POSITION", "is missing");
   Attributes attributes;
-  attributes.position = readFloats(document, given["POSITION"], 3, 3);
+  attributes.position = std::move(*position);
   attributes.normal = find("NORMAL", 3, 3);
   attributes.color = find("COLOR_0", 3, 4);
   attributes.mark = find("_TRANSLUCENT", 1, 1);
@@ -91,13 +97,13 @@ Attributes readAttributes(const GltfDocument& document, const Field& primitive, 
   }
   for (const auto* other : {&attributes.normal, &attributes.uv, &attributes.color, &attributes.mark,
                             &attributes.normalUv, &attributes.lobeUv, &attributes.tangent})
-    if (*other) requireCount(**other, attributes, given);
+    if (*other) requireCount(document, **other, attributes, field + ".attributes");
   for (const auto* sets : {&attributes.joints, &attributes.weights})
-    for (const AccessorValues& set : *sets) requireCount(set, attributes, given);
-  const auto targets = primitive.find("targets");
-  const std::vector<Field> displacements = targets ? targets->items() : std::vector<Field>();
-  for (std::size_t i = 0; i < displacements.size() && i < weights.size(); ++i)
-    if (weights[i] != 0) morph(document, displacements[i], weights[i], attributes);
+    for (const AccessorValues& set : *sets) requireCount(document, set, attributes, field + ".attributes");
+  for (std::size_t i = 0; i < primitive.targets.size() && i < weights.size(); ++i)
+    if (weights[i] != 0)
+      morph(document, primitive.targets[i], weights[i], field + ".targets[" + std::to_string(i) + "]",
+            attributes);
   return attributes;
 }
 
@@ -114,18 +120,17 @@ struct WorldVertices {
   std::vector<glm::dvec3> positions;
 };
 
-constexpr int kTriangles = 4, kTriangleFan = 6;  // modes of primitives
-
 // Strips and fans as lists of triangles.
-std::vector<std::uint32_t> toTriangles(int mode, const Field& primitive, std::vector<std::uint32_t> indices) {
-  if (mode == kTriangles) {
+std::vector<std::uint32_t> toTriangles(const GltfDocument& document, int mode, const std::string& field,
+                                       std::vector<std::uint32_t> indices) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
     if (indices.size() % 3 != 0)
-      primitive.fail(std::to_string(indices.size()) + " indices are not a multiple of 3");
+      document.fail(field, std::to_string(indices.size()) + " indices are not a multiple of 3");
     return indices;
   }
   std::vector<std::uint32_t> list;
   for (std::size_t i = 2; i < indices.size(); ++i) {
-    const bool fan = mode == kTriangleFan;
+    const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
     const bool odd = !fan && i % 2 == 1;  // every second triangle of a strip turns the other way
     const std::uint32_t a = fan ? indices[0] : indices[i - 2], b = indices[i - 1], c = indices[i];
     list.insert(list.end(), {a, odd ? c : b, odd ? b : c});
@@ -179,8 +184,8 @@ void repairNormals(WorldVertices& world, const std::vector<std::uint32_t>& indic
 }
 
 // The mean of the joints' matrices by the vertex's weights.
-glm::dmat4 skinned(const Attributes& attributes, std::size_t vertex, const std::vector<glm::dmat4>& joints,
-                   const Field& primitive) {
+glm::dmat4 skinned(const GltfDocument& document, const Attributes& attributes, std::size_t vertex,
+                   const std::vector<glm::dmat4>& joints, const std::string& field) {
   glm::dmat4 sum(0);
   double total = 0;
   for (std::size_t set = 0; set < attributes.joints.size(); ++set)
@@ -189,14 +194,14 @@ glm::dmat4 skinned(const Attributes& attributes, std::size_t vertex, const std::
       if (!(weight > 0)) continue;
       const auto joint = static_cast<std::size_t>(std::max(attributes.joints[set][vertex][k], 0.0f));
       if (joint >= joints.size())
-        primitive["attributes"][("JOINTS_" + std::to_string(set)).c_str()].fail(
-            std::to_string(joint) + " of vertex " + std::to_string(vertex) + " is not one of the " +
-            std::to_string(joints.size()) + " joints");
+        document.fail(field + ".attributes.JOINTS_" + std::to_string(set),
+                      std::to_string(joint) + " of vertex " + std::to_string(vertex) + " is not one of the " +
+                          std::to_string(joints.size()) + " joints");
       sum += weight * joints[joint];
       total += weight;
     }
   if (!(total > 0))
-    primitive["attributes"]["WEIGHTS_0"].fail("are all 0 at vertex " + std::to_string(vertex));
+    document.fail(field + ".attributes.WEIGHTS_0", "are all 0 at vertex " + std::to_string(vertex));
   return sum / total;
 }
 
@@ -212,7 +217,8 @@ struct NormalTransform {
         sign(glm::determinant(linear) < 0 ? -1 : 1) {}
 };
 
-WorldVertices toWorld(const Attributes& attributes, const Field& primitive, const MeshPose& pose) {
+WorldVertices toWorld(const GltfDocument& document, const Attributes& attributes, const std::string& field,
+                      const MeshPose& pose) {
   NormalTransform normals(pose.worldFromMesh);
   glm::dmat4 worldFromMesh = pose.worldFromMesh;
   WorldVertices world;
@@ -220,14 +226,14 @@ WorldVertices toWorld(const Attributes& attributes, const Field& primitive, cons
   world.positions.resize(attributes.count());
   for (std::size_t i = 0; i < attributes.count(); ++i) {
     if (!pose.joints.empty()) {
-      worldFromMesh = skinned(attributes, i, pose.joints, primitive);
+      worldFromMesh = skinned(document, attributes, i, pose.joints, field);
       normals = NormalTransform(worldFromMesh);
     }
     Vertex& v = world.vertices[i];
     const glm::dvec3 position = worldFromMesh * glm::dvec4(toVec3(attributes.position[i]), 1);
     if (!glm::all(glm::lessThan(glm::abs(position), glm::dvec3(kLargestCoordinate))))
-      primitive["attributes"]["POSITION"].fail("vertex " + std::to_string(i) +
-                                               " is farther than 1e18 from the origin");
+      document.fail(field + ".attributes.POSITION",
+                    "vertex " + std::to_string(i) + " is farther than 1e18 from the origin");
     world.positions[i] = position;
     v.normal = {0, 0, 0};
     if (attributes.normal)
@@ -251,35 +257,46 @@ WorldVertices toWorld(const Attributes& attributes, const Field& primitive, cons
 }
 
 // True if the mesh's transform turns the outside in.
-bool isMirrored(const Attributes& attributes, const Field& primitive, const MeshPose& pose) {
+bool isMirrored(const GltfDocument& document, const Attributes& attributes, const std::string& field,
+                const MeshPose& pose) {
   const glm::dmat4 matrix =
-      pose.joints.empty() ? pose.worldFromMesh : skinned(attributes, 0, pose.joints, primitive);
+      pose.joints.empty() ? pose.worldFromMesh : skinned(document, attributes, 0, pose.joints, field);
   return glm::determinant(glm::dmat3(matrix)) < 0;
 }
 
 }  // namespace
 
-TexCoord readTexCoord(const Field& textureInfo) {
-  constexpr int kMostSets = 1000;
-  constexpr double kMost = 1e9;
+TexCoord readTexCoord(const GltfDocument& document, const GltfJson& textureInfo, const std::string& field) {
   TexCoord result;
-  result.set = 0;
-  const auto readSet = [&](const Field& object) {
-    if (const auto set = object.find("texCoord")) result.set = set->integer(0, kMostSets);
+  const auto readSet = [&](const GltfJson& object, const std::string& where) {
+    const auto found = object.find("texCoord");
+    if (found == object.end()) return;
+    constexpr unsigned kMostSets = 1000;
+    if (!found->is_number_unsigned() || found->get<std::uint64_t>() >= kMostSets)
+      document.fail(where + ".texCoord", found->dump() + " is not the number of a set");
+    result.set = *found;
   };
-  readSet(textureInfo);
-  const auto extension = extensionOf(textureInfo, kTransform);
+  result.set = 0;
+  readSet(textureInfo, field);
+  const GltfJson* extension = extensionOf(textureInfo, kTransform);
   if (!extension) return result;
-  readSet(*extension);
+  const std::string where = field + ".extensions." + kTransform;
+  readSet(*extension, where);
+  const auto number = [&](const GltfJson& value, const std::string& key) {
+    if (!value.is_number() || !(std::abs(value.get<double>()) < 1e9))
+      document.fail(where + "." + key, value.dump() + " is not a number below 1e9");
+    return value.get<double>();
+  };
   const auto pair = [&](const char* key, glm::dvec2 absent) {
     const auto found = extension->find(key);
-    if (!found) return absent;
-    const auto values = found->numbers<2>(-kMost, kMost);
-    return glm::dvec2(values[0], values[1]);
+    if (found == extension->end()) return absent;
+    if (!found->is_array() || found->size() != 2)
+      document.fail(where + "." + key, found->dump() + " is not 2 numbers");
+    return glm::dvec2(number((*found)[0], key), number((*found)[1], key));
   };
   const glm::dvec2 offset = pair("offset", {0, 0}), scale = pair("scale", {1, 1});
   const auto rotation = extension->find("rotation");
-  const double angle = rotation ? rotation->number(-kMost, kMost) : 0;
+  const double angle = rotation == extension->end() ? 0 : number(*rotation, "rotation");
   const double c = std::cos(angle), s = std::sin(angle);
   // v grows downwards, so that counterclockwise takes +u to -v.
   result.transform = glm::dmat3(1, 0, 0, 0, 1, 0, offset.x, offset.y, 1) *
@@ -288,32 +305,32 @@ TexCoord readTexCoord(const Field& textureInfo) {
   return result;
 }
 
-bool appendPrimitive(const GltfDocument& document, const Field& primitive, const MeshPose& pose,
-                     const TexCoords& texCoords, Model& model, std::vector<glm::dvec3>& positions,
-                     std::vector<std::string>& warnings) {
-  const auto given = primitive.find("mode");
-  const int mode = given ? given->integer(0, kTriangleFan) : kTriangles;
-  if (mode < kTriangles) {
-    warnings.push_back(primitive.path() + ": points and lines are not drawn");
+bool appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                     const std::string& field, const MeshPose& pose, const TexCoords& texCoords, Model& model,
+                     std::vector<glm::dvec3>& positions, std::vector<std::string>& warnings) {
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
+    if (primitive.mode < 0 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+      document.fail(field + ".mode", std::to_string(primitive.mode) + " is not a mode of glTF");
+    warnings.push_back(field + ": points and lines are not drawn");
     return false;
   }
-  const Attributes attributes = readAttributes(document, primitive, texCoords, pose.weights);
+  const Attributes attributes = readAttributes(document, primitive, field, texCoords, pose.weights);
   if (texCoords.normal.set >= 0 && !attributes.normalUv)
-    warnings.push_back(primitive.path() + ": has no TEXCOORD_" + std::to_string(texCoords.normal.set) +
+    warnings.push_back(field + ": has no TEXCOORD_" + std::to_string(texCoords.normal.set) +
                        " for its normal map, which is ignored");
   std::vector<std::uint32_t> indices;
-  if (const auto listed = primitive.find("indices")) {
-    indices = readIndices(document, *listed, attributes.count());
+  if (primitive.indices != -1) {
+    indices = readIndices(document, primitive.indices, attributes.count(), field + ".indices");
   } else {
     indices.resize(attributes.count());
     std::iota(indices.begin(), indices.end(), 0u);
   }
-  indices = toTriangles(mode, primitive, std::move(indices));
+  indices = toTriangles(document, primitive.mode, field, std::move(indices));
 
   // Mirrored by its transform, a triangle's outside would become its inside.
-  if (isMirrored(attributes, primitive, pose))
+  if (isMirrored(document, attributes, field, pose))
     for (std::size_t i = 0; i < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
-  WorldVertices world = toWorld(attributes, primitive, pose);
+  WorldVertices world = toWorld(document, attributes, field, pose);
   if (attributes.normal)
     repairNormals(world, indices);
   else
@@ -321,7 +338,7 @@ bool appendPrimitive(const GltfDocument& document, const Field& primitive, const
 
   if (model.vertices.size() + world.vertices.size() > kMaxVertices ||
       model.indices.size() + indices.size() > kMaxIndices)
-    primitive.fail("with it the scene has more than 2^24 vertices or triangles");
+    document.fail(field, "with it the scene has more than 2^24 vertices or triangles");
   const auto first = static_cast<std::uint32_t>(model.vertices.size());
   model.vertices.insert(model.vertices.end(), world.vertices.begin(), world.vertices.end());
   positions.insert(positions.end(), world.positions.begin(), world.positions.end());

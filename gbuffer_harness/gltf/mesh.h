@@ -24,8 +24,8 @@ struct TexCoords {
   TexCoord color, normal, lobe;
 };
 
-// Reads the set and the transform of a texture info (baseColorTexture and its like).
-TexCoord readTexCoord(const Field& textureInfo);
+// Reads the set and the transform of a texture info in the file's JSON (baseColorTexture and its like).
+TexCoord readTexCoord(const GltfDocument& document, const GltfJson& textureInfo, const std::string& field);
 
 // How a mesh stands in the world.
 struct MeshPose {
@@ -37,9 +37,9 @@ struct MeshPose {
 // Appends a primitive to the model's vertices and indices; returns whether there was a triangle in it. The
 // vertices' positions go to `positions`, in world space and in double precision, and stay 0 in the model.
 // Without normals every triangle gets its own.
-// Throws InputError naming the primitive or the accessor.
-bool appendPrimitive(const GltfDocument& document, const Field& primitive, const MeshPose& pose,
-                     const TexCoords& texCoords, Model& model, std::vector<glm::dvec3>& positions,
-                     std::vector<std::string>& warnings);
+// Throws InputError naming `field`, the primitive, or the accessor.
+bool appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& primitive,
+                     const std::string& field, const MeshPose& pose, const TexCoords& texCoords, Model& model,
+                     std::vector<glm::dvec3>& positions, std::vector<std::string>& warnings);
 
 }  // namespace pellucid::harness

@@ -3,6 +3,7 @@
 
 #include <glm/mat4x4.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "gltf/document.h"
@@ -10,11 +11,12 @@
 namespace pellucid::harness {
 
 // The node as it stands in the file. Throws InputError for a transform that is not made of finite numbers.
-glm::dmat4 parentFromNode(const Field& node);
+glm::dmat4 parentFromNode(const GltfDocument& document, std::size_t node);
 
-// The matrices that take vertices of a mesh, as its joints bind them, to the world. skin: the field that holds the
-// skin's index. worldFromNode: by node. Throws InputError naming the skin or `skin`.
-std::vector<glm::dmat4> readJoints(const GltfDocument& document, const Field& skin,
-                                   const std::vector<std::optional<glm::dmat4>>& worldFromNode);
+// The matrices that take vertices of a mesh, as its joints bind them, to the world. worldFromNode: by node.
+// Throws InputError naming the skin, or `field`, what refers to it.
+std::vector<glm::dmat4> readJoints(const GltfDocument& document, int skin,
+                                   const std::vector<std::optional<glm::dmat4>>& worldFromNode,
+                                   const std::string& field);
 
 }  // namespace pellucid::harness

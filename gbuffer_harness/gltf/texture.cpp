@@ -26,14 +26,17 @@ constexpr long long kMaxPixels = 1LL << 26;
 // each block of 64 pixels.
 constexpr long long kMaxPixelsPerByte = 8 * 1032;
 
-TextureWrap wrapOf(const Field& sampler, const char* key) {
-  constexpr int kClamp = 33071, kMirror = 33648, kRepeat = 10497;
-  const auto field = sampler.find(key);
-  const int mode = field ? field->integer(0, 1 << 16) : kRepeat;
-  if (mode == kRepeat) return TextureWrap::Repeat;
-  if (mode == kClamp) return TextureWrap::Clamp;
-  if (mode == kMirror) return TextureWrap::Mirror;
-  field->fail(std::to_string(mode) + " is not a wrap mode");
+TextureWrap wrapOf(const GltfDocument& document, int mode, const std::string& field) {
+  switch (mode) {
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return TextureWrap::Repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return TextureWrap::Clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return TextureWrap::Mirror;
+    default:
+      document.fail(field, std::to_string(mode) + " is not a wrap mode");
+  }
 }
 
 // The inverse of linearOf().
@@ -81,46 +84,47 @@ private:
 
 }  // namespace
 
-std::optional<TextureUse> readTextureUse(const GltfDocument& document, const Field& object, const char* key) {
-  const auto info = object.find(key);
-  if (!info) return std::nullopt;
-  return TextureUse{*info, document.index("textures", (*info)["index"]), readTexCoord(*info)};
-}
+Texture readTexture(const GltfDocument& document, int textureIndex, const std::string& field) {
+  const tinygltf::Model& model = document.model;
+  const tinygltf::Texture& source =
+      model.textures[document.index(textureIndex, model.textures.size(), field, "textures")];
+  const std::string textureName = "textures[" + std::to_string(textureIndex) + "]";
+  const std::size_t image =
+      document.index(source.source, model.images.size(), textureName + ".source", "images");
+  const std::string name = "images[" + std::to_string(image) + "]";
 
-Texture readTexture(const GltfDocument& document, std::size_t index) {
-  const Field& source = document.list("textures")[index];
-  const Field& image = document.element("images", source["source"]);
-  GltfBytes own;
-  GltfDocument::Bytes bytes{};
-  if (const auto view = image.find("bufferView")) {
-    bytes = document.bufferView(*view);
-  } else {
-    own = document.resource(image["uri"]);
-    bytes = {own.data(), own.size()};
-  }
+  GltfDocument::Bytes bytes{document.images[image].data(), document.images[image].size()};
+  if (model.images[image].bufferView >= 0)
+    bytes = document.bufferView(model.images[image].bufferView, name);
+  else if (bytes.size == 0)
+    document.fail(name + ".uri", "\"" + model.images[image].uri + "\" cannot be read");
+
   const auto* data = static_cast<const stbi_uc*>(bytes.data);
   const int size = static_cast<int>(bytes.size);  // files have at most 2^30 bytes
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(data, size, &width, &height, &channels))
-    image.fail("is neither PNG nor JPEG");
+    document.fail(name, "is neither PNG nor JPEG");
   if (static_cast<long long>(width) * height > kMaxPixels)
-    image.fail(std::to_string(width) + " x " + std::to_string(height) + " pixels are more than 2^26");
+    document.fail(name,
+                  std::to_string(width) + " x " + std::to_string(height) + " pixels are more than 2^26");
   if (static_cast<long long>(width) * height > kMaxPixelsPerByte * size)
-    image.fail(std::to_string(width) + " x " + std::to_string(height) + " pixels cannot be in " +
-               std::to_string(size) + " bytes");
+    document.fail(name, std::to_string(width) + " x " + std::to_string(height) + " pixels cannot be in " +
+                            std::to_string(size) + " bytes");
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), stbi_image_free);
-  if (!pixels) image.fail(std::string("cannot be decoded: ") + stbi_failure_reason());
+  if (!pixels) document.fail(name, std::string("cannot be decoded: ") + stbi_failure_reason());
 
   Texture texture;
   texture.width = width;
   texture.height = height;
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
   texture.rgba.assign(pixels.get(), pixels.get() + count);
-  if (const auto sampler = source.find("sampler")) {
-    const Field& wraps = document.element("samplers", *sampler);
-    texture.wrapU = wrapOf(wraps, "wrapS");
-    texture.wrapV = wrapOf(wraps, "wrapT");
+  if (source.sampler != -1) {
+    const std::size_t i =
+        document.index(source.sampler, model.samplers.size(), textureName + ".sampler", "samplers");
+    const std::string sampler = "samplers[" + std::to_string(i) + "]";
+    texture.wrapU = wrapOf(document, model.samplers[i].wrapS, sampler + ".wrapS");
+    texture.wrapV = wrapOf(document, model.samplers[i].wrapT, sampler + ".wrapT");
   }
   return texture;
 }
@@ -137,12 +141,12 @@ std::optional<LobeMap> readLobeMap(const GltfDocument& document, const std::vect
   std::vector<Layer> layers;
   Rgba constant = {1, 1, 1, 1};
   for (std::size_t i = 0; i < uses.size(); ++i) {
-    const Texture texture = readTexture(document, uses[i].texture);
+    const Texture texture = readTexture(document, uses[i].texture, uses[i].field + ".index");
     const Layer layer(texture, i >= colors.size());
     if (uses[i].coord != map.coord) {
       const Rgba mean = layer.mean();
       for (std::size_t c = 0; c < 4; ++c) constant[c] *= mean[c];
-      warnings.push_back(uses[i].info.path() + ": has other texture coordinates than " + uses.front().info.path() +
+      warnings.push_back(uses[i].field + ": has other texture coordinates than " + uses.front().field +
                          "; its mean stands in for it");
       continue;
     }

@@ -12,17 +12,15 @@
 
 namespace pellucid::harness {
 
+// Texture `index` decoded: PNG or JPEG, at most 2^26 pixels. Throws InputError naming the texture or image.
+Texture readTexture(const GltfDocument& document, int index, const std::string& field);
+
 // A texture info of the file.
 struct TextureUse {
-  Field info;
-  std::size_t texture;  // into the document's textures
+  int texture = -1;  // into the document's textures
   TexCoord coord;
+  std::string field;  // of the texture info, for messages
 };
-// The info under a key of an object, as "baseColorTexture" of pbrMetallicRoughness; nothing without one.
-std::optional<TextureUse> readTextureUse(const GltfDocument& document, const Field& object, const char* key);
-
-// A texture decoded: PNG or JPEG, at most 2^26 pixels. Throws InputError naming the texture or image.
-Texture readTexture(const GltfDocument& document, std::size_t texture);
 
 struct LobeMap {
   Texture texture;  // rgb: the product of the colors; alpha: of the strength

@@ -36,7 +36,7 @@ TEST_F(Gltf, SparseAccessorsReplaceElements) {
   b.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   expectRefused(b.glb(), {"accessors[0].sparse.indices", "2 at 1", "2 elements"});
   b.json["accessors"][0]["count"] = 1LL << 40;
-  expectRefused(b.glb(), {"accessors[0].count", "16777216"});
+  expectRefused(b.glb(), {"accessors[0].count", "2^24"});
 }
 
 // ---- KHR_texture_transform

@@ -254,7 +254,7 @@ TEST_F(Gltf, NormalMapsAreRead) {
     return w.find("TEXCOORD_1 for its normal map") != std::string::npos;
   }));
   b.json["materials"][0]["normalTexture"]["scale"] = 1e300;
-  expectRefused(b.glb(), {"materials[0].normalTexture.scale", "normalTexture.scale"});
+  expectRefused(b.glb(), {"materials[0].normalTexture.scale", "-1000 .. 1000"});
   b.json["materials"][0]["normalTexture"] = {{"index", 7}};
   expectRefused(b.glb(), {"materials[0].normalTexture.index", "7"});
 }
@@ -429,8 +429,8 @@ TEST_F(Gltf, BadMaterialValuesAreNamed) {
   expectRefusals(medium, R"(
 /materials/0/extensions/KHR_materials_volume/attenuationDistance | -1 | materials[0] | attenuationDistance | -1
 /materials/0/extensions/KHR_materials_volume/attenuationDistance | 0 | attenuationDistance | is 0
-/materials/0/extensions/KHR_materials_volume/attenuationDistance | "far" | attenuationDistance | "far"
-/materials/0/extensions/KHR_materials_volume/attenuationColor | [1, 2, 3] | attenuationColor[1]
+/materials/0/extensions/KHR_materials_volume/attenuationDistance | "far" | attenuationDistance | not a number
+/materials/0/extensions/KHR_materials_volume/attenuationColor | [1, 2, 3] | attenuationColor | 2.0
 /materials/0/extensions/KHR_materials_volume/attenuationColor | [1, 1] | attenuationColor | 3 numbers
 /materials/0/extensions/KHR_materials_volume_scatter/scatterAnisotropy | 1 | scatterAnisotropy
 )");
@@ -439,9 +439,9 @@ TEST_F(Gltf, BadMaterialValuesAreNamed) {
 // ---- Broken files
 
 constexpr const char* kMistakes = R"(
-/accessors/0/count | 5 | accessors[0] | 5 elements | 48 bytes
+/accessors/0/count | 5 | accessors[0].count | 5 elements | 48 bytes
 /accessors/0/count | 1537228672809129302 | accessors[0]
-/accessors/0/count | 0 | accessors[0].count
+/accessors/0/count | 0 | accessors[0].count | 0 elements
 /accessors/0/count | -4 | count
 /accessors/0/byteOffset | 100 | accessors[0] | byteOffset 100
 /accessors/0/type | "MAT4" | accessors[0]
@@ -449,10 +449,10 @@ constexpr const char* kMistakes = R"(
 /accessors/0/componentType | 5124 | accessors[0] | 5124
 /accessors/0/bufferView | removed | accessors[0].bufferView
 /accessors/0/bufferView | 99 | accessors[0].bufferView | 99
-/accessors/0/sparse | {"count": 9, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}} | accessors[0].sparse.indices | 9 elements
+/accessors/0/sparse | {"count": 9, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.count | 9 elements
 /accessors/0/sparse | {"count": 1, "indices": {"bufferView": 2, "componentType": 5126}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.componentType | unsigned
-/accessors/1/componentType | removed | accessors[1].componentType: missing
-/accessors/2/bufferView | "first" | accessors[2].bufferView | "first"
+/accessors/1/componentType | removed | accessors[1].componentType: is missing
+/accessors/2/bufferView | "first" | accessors[2].bufferView: "first" is not an integer
 /bufferViews/0/byteLength | 1048576 | bufferViews[0] | 1048576
 /bufferViews/0/buffer | 3 | bufferViews[0].buffer | 3
 /bufferViews/0/byteStride | 4 | bufferViews[0].byteStride | 4
@@ -460,9 +460,9 @@ constexpr const char* kMistakes = R"(
 /meshes/0/primitives/0/material | 4 | material | 4
 /meshes/0/primitives/0/mode | 9 | mode | 9
 /meshes/0/primitives/0/attributes | {"NORMAL": 1} | POSITION | missing
-/meshes/0/primitives | removed | meshes[0].primitives: missing
+/meshes/0/primitives | removed | meshes[0].primitives: is missing
 /nodes/0/mesh | 7 | nodes[0].mesh | 7
-/nodes/0/mesh | -7 | nodes[0].mesh | -7
+/nodes/0/mesh | -7 | nodes[0].mesh: -7 is not an integer >= 0
 /nodes/0/children | [12] | nodes[0].children | 12
 /nodes/0/matrix | [1, 2, 3] | nodes[0].matrix | 16
 /nodes/0/translation | [1e40, 0, 0] | nodes[0].translation
@@ -473,12 +473,12 @@ constexpr const char* kMistakes = R"(
 /nodes | [{"children": [1, 1]}, {"mesh": 0}] | nodes[0].children | nodes[1] | twice
 /nodes/0/extensions/KHR_lights_punctual/light | 2 | KHR_lights_punctual.light | 2
 /scene | 3 | scene | 3
-/scenes | removed | scenes: missing
+/scenes | removed | scenes: the file has none
 /scenes/0/nodes | [] | no triangles
-/cameras | [{"type": "orthographic"}] | cameras[0].orthographic: missing
-/cameras | [{"perspective": {}}] | cameras[0].type: missing
-/cameras | [{"type": "perspective", "perspective": {"yfov": 4, "znear": 1}}] | cameras[0].perspective.yfov | 4
-/extensions/KHR_lights_punctual/lights | [{"type": "spot"}] | lights[0].spot: missing
+/cameras | [{"type": "orthographic"}] | cameras[0].orthographic: is missing
+/cameras | [{"perspective": {}}] | cameras[0].type: is missing
+/cameras | [{"type": "perspective", "perspective": {"yfov": 4, "znear": 1}}] | cameras[0].perspective.yfov | 4.0
+/extensions/KHR_lights_punctual/lights | [{"type": "point"}, {"type": "spot"}] | lights[1].spot: is missing
 /extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": -1}] | lights[0].intensity
 /extensionsRequired | ["KHR_materials_unlit", "VENDOR_thing"] | extensionsRequired | "VENDOR_thing" is not supported
 /asset/version | "1.0" | asset.version | 1.0
@@ -541,7 +541,7 @@ TEST_F(Gltf, FilesThatAreNotGltf) {
   expectRefused(old, {"version 1"});
   std::string deep = "{\"asset\":{\"version\":\"2.0\",\"extras\":";
   for (int i = 0; i < 200000; ++i) deep += '[';
-  expectRefused(deep, {""}, "t.gltf");
+  expectRefused(deep, {"nested"}, "t.gltf");
   EXPECT_THROW(loadGltf(folder_ / "absent.glb"), InputError);
   EXPECT_THROW(loadGltf(folder_), InputError);
 }

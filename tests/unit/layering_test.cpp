@@ -68,12 +68,12 @@ const std::vector<Rule> kRules = {
      "metrics know captures and images, no files", ""},
     {"gbuffer_harness/scene", R"(#include\s*<(OpenEXR|Imf|nlohmann))", "procedural scenes need no files", ""},
     {"gbuffer_harness/raster",
-     R"(#include\s*(<(OpenEXR|Imf|nlohmann)|"(capture/(exr|read|write)|gltf/|replay/|view/)))",
+     R"(#include\s*(<(OpenEXR|Imf|nlohmann|tiny_gltf)|"(capture/(exr|read|write)|gltf/|replay/|view/)))",
      "the rasterizer knows models and captures, neither files nor replays", ""},
     {"gbuffer_harness/sample", R"(#include\s*"view/)", "integrators copy the sample, and not the viewer", ""},
     {"gbuffer_harness/cli", R"(#include\s*<CLI)", "each source with CLI11 takes many seconds to compile",
      "command.cpp"},
-    {"gbuffer_harness", R"(#include\s*"gltf/(accessor|document|mesh|pose|texture)\.h)", "all but the loader speak raster/model.h",
+    {"gbuffer_harness", R"(#include\s*[<"]tiny_gltf|tinygltf::)", "all but the loader speak raster/model.h",
      "gltf"},
 };
 
