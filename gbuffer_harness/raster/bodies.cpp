@@ -36,16 +36,21 @@ glm::dvec3 cornerOf(const Model& model, std::uint32_t index) {
   return positionOf(model.vertices[model.indices[index]]);
 }
 
-// Signed solid angle of a part, as seen from the point. Van Oosterom & Strackee 1983, "The solid angle of a plane
-// triangle".
+// Signed solid angle of the triangle of Model::indices from `first` on, as seen from the point. Van Oosterom
+// & Strackee 1983, "The solid angle of a plane triangle".
+double solidAngle(const Model& model, std::uint32_t first, const glm::dvec3& from) {
+  const glm::dvec3 a = cornerOf(model, first) - from, b = cornerOf(model, first + 1) - from,
+                   c = cornerOf(model, first + 2) - from;
+  const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
+  const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
+  return 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
+}
+
+// Of a whole part.
 double solidAngle(const Model& model, const Part& part, const glm::dvec3& from) {
   double angle = 0;
-  for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3) {
-    const glm::dvec3 a = cornerOf(model, i) - from, b = cornerOf(model, i + 1) - from, c = cornerOf(model, i + 2) - from;
-    const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-    const double divisor = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-    angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)), divisor);
-  }
+  for (std::uint32_t i = part.firstIndex; i < part.firstIndex + part.indexCount; i += 3)
+    angle += solidAngle(model, i, from);
   return angle;
 }
 
@@ -54,7 +59,7 @@ double solidAngle(const Model& model, const Part& part, const glm::dvec3& from) 
 // holes.
 constexpr double kEnclosed = 0.875 * 4 * std::numbers::pi;
 
-// Pieces whose boxes are closer than this share of the smaller one's diagonal touch: seams err by what their meshes
+// Parts that are closer than this share of the smaller one's diagonal touch: seams err by what their meshes
 // miss of one curve.
 constexpr double kTouching = 1e-3;
 
@@ -101,6 +106,54 @@ private:
   std::vector<std::uint32_t> parent_;
 };
 
+using Triangle = std::array<glm::dvec3, 3>;
+
+Box boxOf(const Triangle& t) {
+  Box box;
+  for (const glm::dvec3& corner : t) box.add(corner);
+  return box;
+}
+
+// Ericson, "Real-Time Collision Detection", 5.1.5.
+glm::dvec3 closestPoint(const glm::dvec3& p, const Triangle& t) {
+  const glm::dvec3 ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0], bp = p - t[1], cp = p - t[2];
+  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return t[0];
+  const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return t[1];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return d1 > d3 ? t[0] + d1 / (d1 - d3) * ab : t[0];
+  const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return t[2];
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return d2 > d6 ? t[0] + d2 / (d2 - d6) * ac : t[0];
+  const double va = d3 * d6 - d5 * d4, toC = d4 - d3, toB = d5 - d6;
+  if (va <= 0 && toC >= 0 && toB >= 0) return toC + toB > 0 ? t[1] + toC / (toC + toB) * (t[2] - t[1]) : t[1];
+  const double sum = va + vb + vc;
+  return sum > 0 ? t[0] + vb / sum * ab + vc / sum * ac : t[0];
+}
+
+// True where the segment runs through the triangle.
+bool pierces(const glm::dvec3& from, const glm::dvec3& to, const Triangle& t) {
+  const glm::dvec3 along = to - from, ab = t[1] - t[0], ac = t[2] - t[0], cross = glm::cross(along, ac);
+  const double determinant = glm::dot(ab, cross);
+  if (determinant == 0) return false;
+  const glm::dvec3 off = from - t[0], other = glm::cross(off, ab);
+  const double u = glm::dot(off, cross) / determinant, v = glm::dot(along, other) / determinant,
+               at = glm::dot(ac, other) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && at >= 0 && at <= 1;
+}
+
+bool touch(const Triangle& a, const Triangle& b, double tolerance) {
+  for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&b, &a)})
+    for (std::size_t i = 0; i < 3; ++i) {
+      const glm::dvec3& corner = (*one)[i];
+      if (glm::distance(corner, closestPoint(corner, *other)) <= tolerance) return true;
+      if (pierces(corner, (*one)[(i + 1) % 3], *other)) return true;
+    }
+  return false;
+}
+
 // Triangles that share corners, of one medium.
 struct Piece {
   std::uint8_t material = 0;
@@ -139,7 +192,7 @@ public:
         const double tolerance = kTouching * std::min(a.box.diagonal(), b.box.diagonal());
         if (b.box.low.x > a.box.high.x + kTouching * a.box.diagonal()) break;
         if (a.material != b.material || sets.of(byX[i]) == sets.of(byX[k])) continue;
-        if (a.box.grown(tolerance).meets(b.box)) sets.join(byX[i], byX[k]);
+        if (hangTogether(a, b, tolerance)) sets.join(byX[i], byX[k]);
       }
     std::map<std::uint32_t, std::uint32_t> numbers;
     std::vector<std::uint32_t> result;
@@ -149,6 +202,10 @@ public:
   }
 
 private:
+  Triangle triangle(std::uint32_t first) const {
+    return {cornerOf(model_, first), cornerOf(model_, first + 1), cornerOf(model_, first + 2)};
+  }
+
   void findPieces(const std::vector<std::uint32_t>& triangles, const std::vector<std::uint8_t>& materials) {
     const std::vector<std::uint32_t> places = placesOf(model_);
     Sets sets(triangles.size());
@@ -172,8 +229,52 @@ private:
         piece = static_cast<std::uint32_t>(pieces_.size());
       }
       pieces_[piece - 1].triangles.push_back(triangles[i]);
-      for (std::uint32_t k = 0; k < 3; ++k) pieces_[piece - 1].box.add(cornerOf(model_, triangles[i] + k));
+      pieces_[piece - 1].box.add(boxOf(triangle(triangles[i])));
     }
+  }
+
+  bool hangTogether(const Piece& a, const Piece& b, double tolerance) const {
+    if (!a.box.grown(tolerance).meets(b.box)) return false;
+    return isInside(a, b) || isInside(b, a) || touchEachOther(a, b, tolerance);
+  }
+
+  // The hollow of a body is a piece of its own.
+  bool isInside(const Piece& inner, const Piece& outer) const {
+    if (!outer.box.contains(inner.box)) return false;
+    const glm::dvec3 point = cornerOf(model_, inner.triangles.front());
+    double angle = 0;
+    for (const std::uint32_t first : outer.triangles) angle += solidAngle(model_, first, point);
+    return std::abs(angle) > kEnclosed;
+  }
+
+  // Sweeps along x over the triangles that lie where both pieces are.
+  bool touchEachOther(const Piece& a, const Piece& b, double tolerance) const {
+    struct Entry {
+      Box box;
+      Triangle triangle;
+    };
+    std::array<std::vector<Entry>, 2> near;
+    for (const std::size_t side : {0u, 1u}) {
+      const Box other = (side == 0 ? b : a).box.grown(tolerance);
+      for (const std::uint32_t first : (side == 0 ? a : b).triangles) {
+        const Triangle t = triangle(first);
+        const Box box = boxOf(t);
+        if (box.meets(other)) near[side].push_back({box.grown(0.5 * tolerance), t});
+      }
+      std::sort(near[side].begin(), near[side].end(),
+                [](const Entry& x, const Entry& y) { return x.box.low.x < y.box.low.x; });
+    }
+    for (const std::size_t side : {0u, 1u}) {
+      // Each pair comes up once: where the second triangle begins within the first.
+      auto next = near[1 - side].begin();
+      for (const Entry& entry : near[side]) {
+        while (next != near[1 - side].end() && next->box.low.x < entry.box.low.x) ++next;
+        for (auto other = next; other != near[1 - side].end() && other->box.low.x <= entry.box.high.x;
+             ++other)
+          if (entry.box.meets(other->box) && touch(entry.triangle, other->triangle, tolerance)) return true;
+      }
+    }
+    return false;
   }
 
   const Model& model_;

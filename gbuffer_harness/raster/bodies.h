@@ -19,8 +19,8 @@ struct BodySeparation {
 
 // Gives bodies of one medium numbers of their own where light of one would reach the other: the diffusion and
 // the gather take light from pixels and texels of their own number alone. Bodies out of each other's reach
-// share a number. A body is all that hangs together: pieces that share corners, and pieces whose boxes meet,
-// whatever their objects are. Model::bodies gets the numbers; `reach` (mm, one each): of the
+// share a number. A body is all that hangs together: parts that share corners, touch, cut each other or lie
+// in each other, whatever their objects are. Model::bodies gets the numbers; `reach` (mm, one each): of the
 // light of Model::materials, 0 of thin walls.
 BodySeparation separateBodies(Model& model, const std::vector<double>& reach);
 
