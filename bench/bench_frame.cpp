@@ -22,8 +22,9 @@ std::vector<VkDescriptorSetLayoutBinding> layoutBindings(const std::vector<VkDes
 }  // namespace
 
 ComputePass::ComputePass(Device& device, std::span<const uint32_t> spirv,
-                         const std::vector<VkDescriptorType>& types)
+                         const std::vector<VkDescriptorType>& types, const Tile& tile)
     : types_(types),
+      tile_(tile),
       sampler_(device),
       layout_(device, layoutBindings(types), {VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushBytes}),
       pipeline_(device) {
@@ -31,7 +32,12 @@ ComputePass::ComputePass(Device& device, std::span<const uint32_t> spirv,
   info.magFilter = info.minFilter = VK_FILTER_LINEAR;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   check(vkCreateSampler(device.handle(), &info, nullptr, sampler_.receive()), "vkCreateSampler");
-  createPipeline(device, layout_, {spirv.data(), spirv.size_bytes()}, {}, pipeline_);
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < tile.specialization.size(); ++i) entries.push_back({i, 4 * i, 4});
+  createPipeline(
+      device, layout_, {spirv.data(), spirv.size_bytes()},
+      {static_cast<uint32_t>(entries.size()), entries.data(), 4 * entries.size(), tile.specialization.data()},
+      pipeline_);
 }
 
 void ComputePass::record(VkCommandBuffer commandBuffer, int width, int height,
@@ -45,9 +51,8 @@ void ComputePass::record(VkCommandBuffer commandBuffer, int width, int height,
   vkCmdBindPipeline(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
   layout_.push(commandBuffer, VK_PIPELINE_BIND_POINT_COMPUTE, writes.all());
   vkCmdPushConstants(commandBuffer, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushBytes, push.data());
-  constexpr uint32_t kTile = 8;
-  const auto groups = [](int size) { return (static_cast<uint32_t>(size) + kTile - 1) / kTile; };
-  vkCmdDispatch(commandBuffer, groups(width), groups(height), 1);
+  const auto groups = [](int size, uint32_t tile) { return (static_cast<uint32_t>(size) + tile - 1) / tile; };
+  vkCmdDispatch(commandBuffer, groups(width, tile_.width), groups(height, tile_.height), 1);
 }
 
 Image outputOf(Device& device, const Variant& variant) {

@@ -20,12 +20,18 @@ namespace pellucid::bench {
 // The image or buffer of a binding.
 using Resource = std::variant<PellucidImage, VkDescriptorBufferInfo>;
 
+// How many pixels one workgroup does, and the constants 0.. that say so to the shader.
+struct Tile {
+  uint32_t width = 8, height = 8;
+  std::vector<uint32_t> specialization = {};
+};
+
 class ComputePass {
 public:
-  // Workgroups do 8 x 8 pixels. types[i] is binding i of set 0. Combined image samplers are linear and clamp to
-  // the edge. The shader may have four words of push constants.
+  // types[i] is binding i of set 0. Combined image samplers are linear and clamp to the edge. The shader may
+  // have four words of push constants.
   ComputePass(harness::Device& device, std::span<const uint32_t> spirv,
-              const std::vector<VkDescriptorType>& types);
+              const std::vector<VkDescriptorType>& types, const Tile& tile = {});
 
   // Without a barrier.
   void record(VkCommandBuffer commandBuffer, int width, int height, const std::vector<Resource>& resources,
@@ -33,6 +39,7 @@ public:
 
 private:
   std::vector<VkDescriptorType> types_;
+  Tile tile_;
   harness::Owned<VkSampler, vkDestroySampler> sampler_;
   harness::PushLayout layout_;
   harness::Pipeline pipeline_;

@@ -130,6 +130,7 @@ int createContext(const Options& options) {
 
 void measureContextCreation(const std::string& device, int repeat, Report& report) {
   report.section("context creation");
+  report.setFloor(0);
   const TemporaryFolder folder;
   const auto several = [&](const std::vector<std::string>& arguments, const Environment& variables) {
     std::vector<Cost> costs;

@@ -11,6 +11,7 @@
 #include "capture/material.h"
 #include "common/error.h"
 #include "frame_errors.h"
+#include "kFloor.h"
 #include "measure.h"
 #include "names.h"
 
@@ -36,6 +37,44 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// The floor: microseconds of one pass over the depths, the irradiance and the output of a capture, in the
+// fastest of several workgroup shapes. Throws DeviceError when a pass wrote something else than its inputs
+// say: a floor that skips work would be no floor.
+double measureFloor(Device& device, const Capture& capture, int repeat) {
+  struct Shape {
+    uint32_t width, height, pixels;  // of a group in threads; pixels of each thread
+  };
+  constexpr Shape kShapes[] = {{8, 8, 1}, {16, 16, 1}, {32, 8, 1}, {8, 8, 2}, {16, 16, 2}, {32, 8, 2}};
+  constexpr float kRounding = 4e-3f;  // of halves up to 4, twice: of the irradiance and of the sum
+  constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+  const int width = capture.width, height = capture.height;
+  GpuImage front(device, width, height, VK_FORMAT_R32_SFLOAT),
+      back(device, width, height, VK_FORMAT_R32_SFLOAT);
+  GpuImage irradiance(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);
+  GpuImage result(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);
+  front.upload(capture.frontDepth.image);
+  back.upload(capture.backDepth.image);
+  irradiance.upload(capture.irradiance);
+  Image right = capture.irradiance;
+  for (size_t i = 0; i < right.data.size(); ++i)
+    right.data[i] += capture.backDepth.image.data[i / 3] - capture.frontDepth.image.data[i / 3];
+  double fastest = INFINITY;
+  for (const Shape& s : kShapes) {
+    const ComputePass pass(device, kFloor, {kRead, kRead, kRead, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
+                           {s.width * s.pixels, s.height, {s.width, s.height, s.pixels}});
+    result.clear();
+    const Time time = measure(device, repeat, [&](VkCommandBuffer commandBuffer) {
+      pass.record(commandBuffer, width, height, {front.use(), back.use(), irradiance.use(), result.use()});
+    });
+    fastest = std::min(fastest, time.median);
+    const Image written = rgb(result.download());
+    if (!std::equal(written.data.begin(), written.data.end(), right.data.begin(), right.data.end(),
+                    [](float a, float b) { return std::abs(a - b) < kRounding; }))
+      throw DeviceError("the floor pass wrote something else than its inputs say");
+  }
+  return fastest;
 }
 
 struct TimedError {
@@ -104,11 +143,12 @@ public:
   const Capture& capture() const { return capture_; }
 
   // Rows of everything. Returns times against errors of whole frames.
-  std::vector<TimedError> run() {
-    head();
+  std::vector<TimedError> run(double floor) {
+    head(floor);
     // Downloads leave the device idle: errors first, then times without a gap.
     measureErrors();
     wholeFramesOfModule();
+    parts();
     if (why_.empty())
       wholeFramesOfOthers();
     else
@@ -121,19 +161,20 @@ private:
     settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
     return std::make_shared<BenchFrame>(device_, context_, withoutAlbedo_, materials_, settings, inputs_);
   }
-  static ReplaySettings diffusionAlone() {
+  static ReplaySettings alone(PellucidFeatureBits feature) {
     ReplaySettings s;
-    s.features = PELLUCID_FEATURE_DIFFUSION;
+    s.features = feature;
     return s;
   }
 
-  void head() {
+  void head(double floor) {
     const size_t covered =
         capture_.material.size() -
         static_cast<size_t>(std::count(capture_.material.begin(), capture_.material.end(), 0));
     const double share = static_cast<double>(covered) / static_cast<double>(capture_.material.size());
     char text[160];
-    std::snprintf(text, sizeof text, "%s, %s, %.3f covered", capture_.name.c_str(), size().c_str(), share);
+    std::snprintf(text, sizeof text, "%s, %s, %.3f covered, floor %.1f us", capture_.name.c_str(),
+                  size().c_str(), share, floor);
     report_.section(text, "frames");
     if (!truth_.pixels.empty())
       report_.note("  error: of the diffusion, from brute force at " + std::to_string(truth_.pixels.size()) +
@@ -144,7 +185,8 @@ private:
                     {"name", "frame"},
                     {"covered", share},
                     {"lights", capture_.lights.size()},
-                    {"error_pixels", truth_.pixels.size()}});
+                    {"error_pixels", truth_.pixels.size()},
+                    {"floor_us", floor}});
   }
 
   void measureErrors() {
@@ -154,23 +196,30 @@ private:
       if (!(rootMeanSquare(errors_[v.name]) < kWrong))
         throw DeviceError(v.name + " does not diffuse " + capture_.name);
     };
-    add(moduleVariant(frame(diffusionAlone()), kModule));
+    add(moduleVariant(frame(alone(PELLUCID_FEATURE_DIFFUSION)), kModule));
     for (const Variant& v : diffusionsOfOthers_) add(v);
   }
 
-  // `diffusion`: the variant whose error the row has. Images are compared with the capture's truth.
-  void add(const Variant& v, const Time& time, const std::string& diffusion,
+  void row(const std::string& kind, const Variant& v, const std::string& diffusion) {
+    add(kind, v, measure(device_, repeat_, v.record), diffusion);
+  }
+
+  // `diffusion`: the variant whose error the row has; empty: none. Whole images are compared with the
+  // capture's truth.
+  void add(const std::string& kind, const Variant& v, const Time& time, const std::string& diffusion,
            nlohmann::json more = nlohmann::json::object()) {
-    more.update({{"frame", capture_.name}, {"size", size()}, {"kind", "whole"}});
+    more.update({{"frame", capture_.name}, {"size", size()}, {"kind", kind}});
     std::optional<double> error;
     if (const auto found = errors_.find(diffusion); found != errors_.end()) {
       error = rootMeanSquare(found->second);
       more["relative_rmse_rgb"] = found->second;
     }
-    if (capture_.truth) more.update(errorFields(outputOf(device_, v), capture_));
-    const auto against = more.find("truth_relative_rmse");
-    const std::optional<double> shown = against != more.end() ? against->get<double>() : error;
-    if (shown) points_.push_back({v.name, *shown, std::max(time.median, 1.0)});
+    if (kind == "whole" && capture_.truth) more.update(errorFields(outputOf(device_, v), capture_));
+    if (kind == "whole") {
+      const auto against = more.find("truth_relative_rmse");
+      const std::optional<double> shown = against != more.end() ? against->get<double>() : error;
+      if (shown) points_.push_back({v.name, *shown, std::max(time.median, 1.0)});
+    }
     report_.add({v.name, v.dispatches, v.barriers, v.transientBytes, error, more}, time);
   }
 
@@ -227,7 +276,7 @@ private:
     const nlohmann::json host = hostTimes(*f, std::move(recordings));
     nlohmann::json more = host;
     if (turned_) more.update(flickerOf(v, whole));
-    add(v, time, kModule, more);
+    add("whole", v, time, kModule, more);
     char text[160];
     std::snprintf(text, sizeof text, "    CPU: plan %.1f us, constants %.1f us, record %.1f us",
                   host["cpu_plan_us"].get<double>(), host["cpu_constants_us"].get<double>(),
@@ -240,10 +289,22 @@ private:
     for (const uint32_t samples : kSamples) wholeFrame(samples);
   }
 
+  // Translucency and diffusion alone.
+  void parts() {
+    report_.note("  translucency alone");
+    row("translucency", moduleVariant(frame(alone(PELLUCID_FEATURE_TRANSLUCENCY)), kModule), "");
+    if (why_.empty()) {
+      row("translucency", gaussianTransmittance(others_).variant, "");
+      row("translucency", burleyTransmittance(others_).variant, "");
+    }
+    report_.note("  diffusion alone");
+    row("diffusion", moduleVariant(frame(alone(PELLUCID_FEATURE_DIFFUSION)), kModule), kModule);
+    for (const Variant& v : diffusionsOfOthers_) row("diffusion", v, v.name);
+  }
+
   void wholeFramesOfOthers() {
     report_.note("  whole frames of others");
-    for (const WholeFrame& w : wholeFrames(others_))
-      add(w.variant, measure(device_, repeat_, w.variant.record), w.diffusion);
+    for (const WholeFrame& w : wholeFrames(others_)) row("whole", w.variant, w.diffusion);
   }
 
   Device& device_;
@@ -269,10 +330,15 @@ std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Con
                                                        const FrameOptions& options, int repeat,
                                                        Report& report) {
   requireRightTransmittance(device, context, compileMaterial(PresetMaterial{"skin1"}, "skin1"));
+  std::map<std::string, double> floors;  // by size
   std::map<std::string, std::vector<Plot>> plots;
   for (const FrameSource& source : sources) {
     FrameBench bench(device, context, options, repeat, source, report);
-    const std::vector<TimedError> points = bench.run();
+    const auto [floor, isNew] = floors.try_emplace(bench.size());
+    if (isNew)
+      floor->second = measureFloor(device, slab(bench.capture().width, bench.capture().height), repeat);
+    report.setFloor(floor->second);
+    const std::vector<TimedError> points = bench.run(floor->second);
     if (!points.empty())
       plots[bench.size()].push_back(
           timeAgainstError(bench.capture().name + ", " + bench.size(), points,

@@ -17,6 +17,8 @@ public:
 
   // `name`: of the section in the JSON; default: the title.
   void section(const std::string& title, const std::string& name = "");
+  // From here on times are also stated as multiples of the floor; 0: not.
+  void setFloor(double microseconds) { floor_ = microseconds; }
 
   struct Row {
     std::string name;
@@ -36,6 +38,7 @@ public:
 
 private:
   std::FILE* table_;
+  double floor_ = 0;
   std::string section_;
   nlohmann::json rows_ = nlohmann::json::array();
 };
