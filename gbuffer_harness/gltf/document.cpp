@@ -432,7 +432,7 @@ int GltfDocument::reference(const GltfJson& object, const char* key, const std::
   const auto found = object.find(key);
   if (found == object.end()) fail(field + "." + key, "is missing");
   if (!found->is_number_unsigned()) fail(field + "." + key, found->dump() + " is not an integer >= 0");
-  return static_cast<int>(std::min<std::size_t>(*found, 1u << 30));
+  return static_cast<int>(std::min<std::size_t>(found->get<std::size_t>(), 1u << 30));
 }
 
 GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
