@@ -102,20 +102,12 @@ Capture head(int width, int height) {
 
 class FrameErrors : public testing::Test {
 protected:
-  FrameErrors() : capture(head(48, 27)), materials(compileMaterials(capture)) {
-    std::filesystem::remove_all(folder);
-  }
-  ~FrameErrors() override { std::filesystem::remove_all(folder); }
-
-  std::filesystem::path onlyFile() const { return std::filesystem::directory_iterator(folder)->path(); }
-
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pellucid_bench_cache";
-  Capture capture;
-  std::vector<PellucidMaterial> materials;
+  Capture capture = head(48, 27);
 };
 
 TEST_F(FrameErrors, SampledPixelsAreTheReferences) {
-  const DiffusionTruth truth = diffusionTruth(capture, materials, 40, {});
+  const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  const DiffusionTruth truth = diffusionTruth(capture, materials, 40);
   ASSERT_EQ(truth.pixels.size(), 40u);
   Capture plain = capture;
   plain.albedo = {};
@@ -133,20 +125,6 @@ TEST_F(FrameErrors, SampledPixelsAreTheReferences) {
   Image brighter = whole;
   for (float& v : brighter.data) v *= 1.03f;
   EXPECT_NEAR(rootMeanSquare(diffusionErrors(brighter, truth)), 0.03, 3e-4);
-}
-
-TEST_F(FrameErrors, TheCacheIsReadAndOneThatIsBrokenIsNot) {
-  const DiffusionTruth truth = diffusionTruth(capture, materials, 40, folder);
-  std::ifstream(onlyFile()) >> std::ws;
-  Json stored = Json::parse(std::ifstream(onlyFile()));
-  stored["values"][0][0] = 12345.0;
-  std::ofstream(onlyFile()) << stored;
-  EXPECT_EQ(diffusionTruth(capture, materials, 40, folder).values[0][0], 12345.0);
-  std::ofstream(onlyFile()) << "{";
-  EXPECT_EQ(diffusionTruth(capture, materials, 40, folder).values, truth.values);
-  // Other inputs have other files.
-  capture.irradiance.data[3 * truth.pixels[0]] += 0.5f;
-  EXPECT_NE(diffusionTruth(capture, materials, 40, folder).values, truth.values);
 }
 
 TEST_F(FrameErrors, AlbedoMultipliesBeforeTruthIsCompared) {
@@ -219,9 +197,8 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
   writeCapture(capture, exr);
   writeCapture(capture, folder / "face.turned.exr");
   ASSERT_EQ(runs("--tables frames --frames " + exr +
-                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 "
-                 "--cache " +
-                 (folder / "cache").string() + " --plot " + folder.string() + " --json " + json),
+                 " --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --repeat 1 --error-pixels 50 --plot " +
+                 folder.string() + " --json " + json),
             0)
       << output();
   Json run = Json::parse(std::ifstream(json));
@@ -272,26 +249,6 @@ TEST_F(Command, BadInputIsNamed) {
   EXPECT_NE(output().find("none.json: cannot be read"), std::string::npos) << output();
   EXPECT_NE(runs("--frame-sizes 64"), 0);
   EXPECT_NE(output().find("\"64\" is not WIDTHxHEIGHT"), std::string::npos) << output();
-}
-
-TEST_F(Command, SubmitsTheFramesOfARun) {
-  const std::filesystem::path file = folder / "submission.json";
-  ASSERT_EQ(runs("--tables frames --frame-names nothing --frame-sizes 32x32 --shadow-size 16 --error-pixels "
-                 "16 --repeat 1 --submit " +
-                 file.string()),
-            0)
-      << output();
-  const Json json = Json::parse(std::ifstream(file));
-  EXPECT_NE(json["device"], "");
-  EXPECT_NE(json["driver"], "");
-  EXPECT_NE(json["commit"], "");
-  ASSERT_EQ(json["frames"].size(), 1u);
-  EXPECT_EQ(json["frames"][0]["frame"], "nothing");
-  EXPECT_GT(json["frames"][0]["us"]["Pellucid"], 0);
-  EXPECT_LT(std::filesystem::file_size(file), 4000u);
-  EXPECT_NE(runs("--tables context --submit " + file.string()), 0);
-  EXPECT_NE(output().find("the table frames"), std::string::npos) << output();
-  EXPECT_EQ(runs("--results " + file.string() + " --submit " + file.string()), 3);
 }
 
 }  // namespace

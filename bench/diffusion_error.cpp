@@ -39,8 +39,8 @@ std::vector<ErrorScene> errorScenes() {
   return {
       {"checker of 1/8 of the width, at 17 degrees", "checker", {{"cell", plane / 8}, {"angle", 17}}, plane},
       {"step at 30 degrees", "step", {{"angle", 30}}, plane},
-      {"tilted by 60 degrees, step", "tilted", tilted, plane},
-      {"tilted by 60 degrees, step at 30 degrees", "tilted", {{"tilt", 60}, {"angle", 30}}, plane},
+      {"tilted by 60 degrees, step", "step", tilted, plane},
+      {"tilted by 60 degrees, step at 30 degrees", "step", {{"tilt", 60}, {"angle", 30}}, plane},
       {"tilted by 60 degrees, checker at 17 degrees",
        "checker",
        {{"cell", plane / 8}, {"angle", 17}, {"tilt", 60}},
@@ -72,7 +72,7 @@ void paintChecker(Capture& capture, double side) {
 // `size` pixels a side; all lengths scaled so that a pixel is 1 mm wide where the scene has its width.
 Capture makeErrorCapture(const ErrorScene& scene, int size) {
   SceneParameters p{.name = scene.scene, .width = size, .height = size, .options = scene.options};
-  if (scene.scene == "checker" || scene.scene == "step" || scene.scene == "tilted") p.options["samples"] = 4;
+  if (scene.scene == "checker" || scene.scene == "step") p.options["samples"] = 4;
   p.shadowSize = 0;
   Capture capture = makeScene(p);
   capture.metersPerUnit = 0.001 * size / scene.width;

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <functional>
 #include <random>
-#include <string_view>
 #include <utility>
 
 #include "common/compare.h"
 #include "common/parallel.h"
-#include "common/whole_file.h"
 #include "metrics/eye.h"
 #include "metrics/flicker.h"
 #include "reference/diffusion.h"
@@ -26,33 +21,7 @@ namespace {
 constexpr unsigned kSeed = 37;
 // Share of the profile's energy that brute force leaves out: a tenth of the least error in the table.
 constexpr double kDiscarded = 1e-4;
-constexpr int kBox = 4;      // pixels a side of the averages that `pellucid evaluate` compares
-constexpr int kVersion = 2;  // of what the hash stands for
-
-// A hash of each input that the diffusion depends on.
-size_t hashOf(const Capture& c, const std::vector<PellucidMaterial>& materials, int count) {
-  size_t hash = 0;
-  const auto add = [&](const auto* values, size_t size) {
-    const std::string_view bytes(reinterpret_cast<const char*>(values), size * sizeof *values);
-    hash = 31 * hash + std::hash<std::string_view>()(bytes);
-  };
-  const int numbers[] = {kVersion,
-                         static_cast<int>(kSeed),
-                         count,
-                         c.width,
-                         c.height,
-                         static_cast<int>(c.frontDepth.encoding),
-                         c.normalsInViewSpace};
-  add(numbers, std::size(numbers));
-  for (const double& number : {kDiscarded, c.metersPerUnit}) add(&number, 1);
-  add(c.clipFromView.data(), c.clipFromView.size());
-  add(c.viewFromWorld.data(), c.viewFromWorld.size());
-  for (const Image* image : {&c.frontDepth.image, &c.normal, &c.irradiance})
-    add(image->data.data(), image->data.size());
-  add(c.material.data(), c.material.size());
-  add(materials.data(), materials.size());
-  return hash;
-}
+constexpr int kBox = 4;  // pixels a side of the averages that `pellucid evaluate` compares
 
 std::vector<std::uint32_t> choosePixels(const Capture& c, int count) {
   constexpr int kTile = 32;
@@ -98,38 +67,13 @@ std::vector<std::array<double, 3>> bruteForce(const Capture& c,
   return values;
 }
 
-// Nothing where there is no such file, or one of other pixels.
-std::optional<DiffusionTruth> readCached(const std::filesystem::path& path,
-                                         const std::vector<std::uint32_t>& pixels) {
-  std::ifstream file(path);
-  if (!file) return std::nullopt;
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
-  try {
-    DiffusionTruth truth{json.at("pixels"), json.at("values")};
-    if (truth.pixels == pixels && truth.values.size() == pixels.size()) return truth;
-  } catch (const nlohmann::json::exception&) {
-  }
-  std::fprintf(stderr, "%s: is not what brute force wrote; it is computed again\n", path.c_str());
-  return std::nullopt;
-}
-
 }  // namespace
 
 DiffusionTruth diffusionTruth(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                              int count, const std::filesystem::path& cache) {
+                              int count) {
   DiffusionTruth truth;
   truth.pixels = choosePixels(capture, count);
-  if (truth.pixels.empty()) return truth;
-  std::filesystem::path path;
-  if (!cache.empty()) {
-    path = cache / ("diffusion-" + std::to_string(hashOf(capture, materials, count)) + ".json");
-    if (const auto cached = readCached(path, truth.pixels)) return *cached;
-  }
-  truth.values = bruteForce(capture, materials, truth.pixels);
-  if (!cache.empty()) {
-    std::filesystem::create_directories(cache);
-    writeWholeText(path, nlohmann::json{{"pixels", truth.pixels}, {"values", truth.values}}.dump());
-  }
+  if (!truth.pixels.empty()) truth.values = bruteForce(capture, materials, truth.pixels);
   return truth;
 }
 

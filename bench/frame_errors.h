@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -20,10 +19,9 @@ struct DiffusionTruth {
 };
 
 // At `count` pixels with a material, or all of them if there are fewer: covered pixels, by tiles, are split
-// into `count` equal runs, of each of which a fixed seed takes one. On all cores. `cache`: folder that
-// results are kept in by a hash of the inputs; empty: none.
+// into `count` equal runs, of each of which a fixed seed takes one. On all cores.
 DiffusionTruth diffusionTruth(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials,
-                              int count, const std::filesystem::path& cache);
+                              int count);
 
 // One number a channel: root mean square of the difference over that of the truth.
 using ChannelErrors = std::array<double, 3>;

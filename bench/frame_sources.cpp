@@ -9,7 +9,6 @@
 #include "common/error.h"
 #include "gltf/gltf.h"
 #include "raster/raster.h"
-#include "scene.h"
 #include "scene/scene.h"
 
 namespace pellucid::bench {
@@ -141,6 +140,15 @@ private:
 };
 
 }  // namespace
+
+Capture withMapsAlone(Capture capture) {
+  for (Light& light : capture.lights)
+    for (ShadowMap& map : light.shadowMaps) {
+      map.exitDepth = {};
+      map.casterMaterial.clear();
+    }
+  return capture;
+}
 
 std::vector<FrameSource> frameSources(Device& device, const FrameOptions& options) {
   std::vector<FrameSource> sources;

@@ -22,6 +22,10 @@ struct FrameSource {
   std::shared_ptr<const harness::Capture> turned = nullptr;
 };
 
+// The capture without exit depths and caster materials: few engines have them, and the other methods here
+// bind no images for them.
+harness::Capture withMapsAlone(harness::Capture capture);
+
 // Captures of files come first, then every name at each size; only the former where there are some and
 // neither models nor names are given. The device draws models. Throws InputError for what cannot be read.
 std::vector<FrameSource> frameSources(harness::Device& device, const FrameOptions& options);

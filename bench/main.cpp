@@ -6,7 +6,6 @@
 
 #include "commit.h"
 #include "common/error.h"
-#include "common/whole_file.h"
 #include "options.h"
 #include "results.h"
 #include "sections.h"
@@ -32,12 +31,7 @@ public:
   Json measure(const Keep& keep) {
     std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
                  repeat_);
-    const uint32_t vulkan = device_.properties().apiVersion;
     json_ = {{"device", device_.description()},
-             {"device_name", device_.properties().deviceName},
-             {"vulkan", std::to_string(VK_API_VERSION_MAJOR(vulkan)) + "." +
-                            std::to_string(VK_API_VERSION_MINOR(vulkan)) + "." +
-                            std::to_string(VK_API_VERSION_PATCH(vulkan))},
              {"commit", PELLUCID_COMMIT},
              {"repeat", repeat_}};
     // Bad files are named before the context takes its time.
@@ -72,9 +66,7 @@ private:
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
     if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
-    if (wanted("paths"))
-      for (auto& [name, plots] : measurePaths(device_, context, options_.frames, repeat_, report_))
-        plots_[name] = std::move(plots);
+    if (wanted("paths")) measurePaths(device_, context, options_.frames, repeat_, report_);
     if (wanted("frames"))
       for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
         plots_["frames_" + size] = std::move(frames);
@@ -96,11 +88,10 @@ int run(const Options& options) {
   const Json before = options.compare.empty() ? Json() : readResults(options.compare);
   const bool stored = !options.results.empty();
   const auto keep = [&](const Json& json) {
-    if (!options.json.empty() && options.json != "-") writeResults(json, options.json, options.ratios);
+    if (!options.json.empty() && options.json != "-") writeResults(json, options.json);
   };
   const Json now = stored ? readResults(options.results) : Run(options).measure(keep);
-  if (!stored && !options.json.empty()) writeResults(now, options.json, options.ratios);
-  if (!options.submit.empty()) writeWholeText(options.submit, submission(now).dump(1) + "\n");
+  if (!stored && !options.json.empty()) writeResults(now, options.json);
   if (options.compare.empty()) return 0;
   return printWhatGrew(before, now, options.json == "-" ? stderr : stdout) > 0 ? 1 : 0;
 }

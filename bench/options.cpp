@@ -55,18 +55,12 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--error-pixels", f.errorPixels, "of a frame, at most, where brute force says the error")
       ->check(CLI::Range(16, 1000000))
       ->capture_default_str();
-  app.add_option("--cache", f.cache, "folder that keeps what brute force gave");
 
   app.add_option("--json", options.json, "file to write, - for standard output");
-  app.add_flag("--ratios", options.ratios,
-               "leave times out of the JSON: a software device only ranks variants");
   app.add_option("--plot", options.plot, "folder for plots of time against error");
   app.add_option("--compare", options.compare,
                  "JSON of another run: says what is slower or worse now, and exits with 1 if something is");
-  app.add_option("--results", options.results, "JSON to compare or submit in place of a run");
-  app.add_option(
-      "--submit", options.submit,
-      "JSON to write: device, driver, commit and the times of whole frames, small enough for an issue");
+  app.add_option("--results", options.results, "JSON to compare in place of a run");
 
   app.add_flag("--create-context", options.createContext)->group("");
   app.add_option("--uses", options.uses)->group("");
@@ -74,10 +68,7 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--save-cache", options.saveCache)->group("");
   try {
     app.parse(argc, argv);
-    if (!options.results.empty() && options.compare.empty() && options.submit.empty())
-      throw CLI::RequiresError("--results", "--compare or --submit");
-    if (!options.submit.empty() && options.results.empty() && options.tables.count("frames") == 0)
-      throw CLI::RequiresError("--submit", "the table frames");
+    if (!options.results.empty() && options.compare.empty()) throw CLI::RequiresError("--results", "--compare");
   } catch (const CLI::ParseError& e) {
     return app.exit(e);
   }

@@ -17,18 +17,15 @@ struct FrameOptions {
   std::vector<std::string> names;          // of the made ones; empty: all
   std::optional<int> shadowSize;           // texels a side; absent: by the kind of device
   int errorPixels = 4096;                  // at most, that brute force is computed at
-  std::filesystem::path cache;             // folder; empty: brute force is computed each time
 };
 
 struct Options {
   std::string device, json;
   std::filesystem::path plot;
-  bool ratios = false;
   std::optional<int> repeat;  // absent: 7, or 3 on a software device
   std::set<std::string> tables = {"frames", "context"};
   FrameOptions frames;
   std::filesystem::path compare, results;
-  std::filesystem::path submit;  // file for a small extract of the results; empty: none
   // Options of the processes that the section context starts.
   bool createContext = false;
   std::uint32_t uses = 0;  // of that context; PellucidContextDesc::uses

@@ -13,7 +13,6 @@
 #include "names.h"
 #include "raster/camera_path.h"
 #include "raster/raster.h"
-#include "scene.h"
 #include "sections.h"
 
 namespace pellucid::bench {
@@ -26,7 +25,6 @@ constexpr int kPathSize = 512, kPathFrames = 24;  // as docs/accuracy.md has the
 constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
 constexpr int kStill = 16;                // frames before a move
 constexpr const char* kPublished[] = {"Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
-constexpr Color kColors[] = {{0, 0, 0}, {0, 90, 200}, {0, 150, 60}, {130, 130, 130}, {230, 180, 0}, {200, 60, 0}, {170, 0, 150}};
 
 // Frames in their order in, images out.
 struct Method {
@@ -61,14 +59,12 @@ public:
     }
   }
 
-  // RMSE of the frames on the left, the 99.9th percentile on the right.
-  std::vector<Plot> follow(const std::string& name) {
+  void follow(const std::string& name) {
     report_.note("path " + name);
     const CameraPath path(name, drawn_.model, drawn_.camera);
     std::vector<Method> all = methods();
     all.push_back({"irradiance", [](const Capture& capture) { return capture.irradiance; }});
     std::vector<std::vector<Flicker>> steps(all.size());
-    std::vector<double> frames;
     PathFlicker flicker;
     for (int frame = 0; frame < kPathFrames; ++frame) {
       const CameraPath::Pose pose = path.at(frame);
@@ -78,26 +74,9 @@ public:
             for (const Method& method : all) images.push_back(method.run(capture));
             return images;
           });
-      if (!step.empty()) frames.push_back(frame);
       for (std::size_t i = 0; i < step.size(); ++i) steps[i].push_back(step[i]);
     }
-    std::vector<Plot> plots(2);
-    plots[0].title = name + ": change, relative RMSE in red";
-    plots[1].title = name + ": change, 99.9th percentile in red";
-    for (Plot& plot : plots) {
-      plot.x.label = "frame";
-      plot.y.low = 0;
-    }
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      add("path " + name, all[i].name, steps[i]);
-      if (i >= std::size(kColors)) continue;  // the irradiance hides the rest
-      for (Plot& plot : plots) plot.series.push_back({all[i].name, kColors[i], frames, {}});
-      for (const Flicker& step : steps[i]) {
-        plots[0].series.back().y.push_back(step.relativeRmse[0]);
-        plots[1].series.back().y.push_back(step.p999[0]);
-      }
-    }
-    return plots;
+    for (std::size_t i = 0; i < all.size(); ++i) add("path " + name, all[i].name, steps[i]);
   }
 
 private:
@@ -187,18 +166,15 @@ void timeAccumulation(Device& device, const Context& context, const FrameSource&
 
 }  // namespace
 
-std::map<std::string, std::vector<Plot>> measurePaths(Device& device, const Context& context, const FrameOptions& options,
-                                                      int repeat, Report& report) {
+void measurePaths(Device& device, const Context& context, const FrameOptions& options, int repeat, Report& report) {
   report.section("along paths: RMSE R G B, 99.9 % R G B", "paths");
   const DrawnModel drawn = portrait(device, options, kPathSize);
   PathBench bench(device, context, drawn, report);
   bench.moved();
-  std::map<std::string, std::vector<Plot>> plots;
-  for (const char* name : kPaths) plots[std::string("path_") + name] = bench.follow(name);
+  for (const char* name : kPaths) bench.follow(name);
   report.section("times of accumulation", "paths");
   for (const FrameSource& source : frameSources(device, options))
     if (source.name != "nothing") timeAccumulation(device, context, source, repeat, report);
-  return plots;
 }
 
 }  // namespace pellucid::bench

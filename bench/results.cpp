@@ -6,13 +6,11 @@
 
 #include "common/error.h"
 #include "common/whole_file.h"
-#include "pellucid/pellucid.h"
 
 namespace pellucid::bench {
 
 using harness::InputError;
 using Json = nlohmann::json;
-using nlohmann::ordered_json;
 
 Json readResults(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -22,14 +20,9 @@ Json readResults(const std::filesystem::path& path) {
   return json;
 }
 
-void writeResults(Json results, const std::string& file, bool ratios) {
+void writeResults(Json results, const std::string& file) {
   Json rows = std::move(results["results"]);
   results.erase("results");
-  if (ratios)
-    for (Json& row : rows)
-      for (const char* time : {"us", "p10_us", "p90_us", "floor_us", "cpu_us", "cpu_plan_us",
-                               "cpu_constants_us", "cpu_record_us"})
-        row.erase(time);
   // One line a row, so that files of a thousand rows stay readable, and so do their differences.
   std::string text = results.dump(1);
   text.resize(text.rfind('\n'));
@@ -114,41 +107,6 @@ int printWhatGrew(const Json& before, const Json& now, std::FILE* out) {
   } catch (const Json::exception& e) {
     throw InputError("", "results", std::string("these are not of pellucid_bench: ") + e.what());
   }
-}
-
-ordered_json submission(const Json& results) {
-  for (const char* field : {"device", "device_name", "vulkan", "commit", "repeat", "results"})
-    if (!results.contains(field))
-      throw InputError("--submit", field, "is not in these results; measure again");
-  const std::string name = results["device_name"], description = results["device"];
-  ordered_json frames = ordered_json::array();
-  for (const Json& row : results["results"]) {
-    if (row.value("section", "") != "frames") continue;
-    if (row.value("kind", "") == "frame")
-      frames.push_back({{"frame", row.at("frame")},
-                        {"size", row.at("size")},
-                        {"covered", row.at("covered")},
-                        {"us", ordered_json::object()}});
-    if (row.value("kind", "") != "whole" || !row.contains("us")) continue;
-    // The row "frame" stands before those of its times.
-    if (frames.empty() || frames.back()["frame"] != row.at("frame").get<std::string>() ||
-        frames.back()["size"] != row.at("size").get<std::string>())
-      throw InputError("--submit", row.at("frame"), "has times before it is described");
-    frames.back()["us"][row.at("name").get<std::string>()] = row["us"];
-  }
-  if (frames.empty()) throw InputError("--submit", "results", "has no section \"frames\"; see --tables");
-  for (const ordered_json& frame : frames)
-    if (frame["us"].empty()) throw InputError("--submit", frame["frame"], "has no times");
-  // The description is "name, driver", where a driver says what it is.
-  const std::string driver = description.size() > name.size() + 2 ? description.substr(name.size() + 2) : "";
-  return {{"pellucid", PELLUCID_VERSION},
-          {"commit", results["commit"]},
-          {"device", name},
-          {"driver", driver},
-          {"vulkan", results["vulkan"]},
-          {"repeat", results["repeat"]},
-          {"unit", "us, median of the runs"},
-          {"frames", frames}};
 }
 
 }  // namespace pellucid::bench

@@ -1,4 +1,4 @@
-// The JSON of a run: files, comparison with an earlier run, and a small extract for an issue.
+// The JSON of a run: files, and comparison with an earlier run.
 #pragma once
 
 #include <cstdio>
@@ -10,9 +10,8 @@ namespace pellucid::bench {
 // Throws InputError for a file that is no results.
 nlohmann::json readResults(const std::filesystem::path& path);
 
-// To a file, or to standard output for "-". ratios: without times. Throws InputError where it cannot be
-// written.
-void writeResults(nlohmann::json results, const std::string& file, bool ratios);
+// To a file, or to standard output for "-". Throws InputError where it cannot be written.
+void writeResults(nlohmann::json results, const std::string& file);
 
 // Prints to `out` every row of both runs whose time or error grew, and how many rows there were; rows that
 // one of them lacks are counted. A time grew when its 10th percentile lies above the 90th of before and its
@@ -22,10 +21,5 @@ void writeResults(nlohmann::json results, const std::string& file, bool ratios);
 inline constexpr double kSameTime = 0.03;   // what a device repeats times within
 inline constexpr double kSameError = 0.02;  // what drivers' rounding of halves may make of it
 int printWhatGrew(const nlohmann::json& before, const nlohmann::json& now, std::FILE* out);
-
-// Device, driver, Vulkan version, commit, repeats, and of each frame and size the median time of every whole
-// frame in microseconds, for a contributor to attach to an issue. Throws InputError where the results lack
-// frames with times, or the device.
-nlohmann::ordered_json submission(const nlohmann::json& results);
 
 }  // namespace pellucid::bench

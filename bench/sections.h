@@ -26,10 +26,10 @@ std::map<std::string, std::vector<harness::Plot>> measureFrames(harness::Device&
 // ---- paths: how much results change along paths of a camera, of lights and of a body
 
 // The portrait of FrameOptions::models along each path of raster/camera_path.h: rows of the module without and with an
-// anchor, accumulated, and with 64 samples, and of the published passes. Then times of frames that accumulate. Returns
-// plots of each frame's change by path. Throws InputError where the models are missing.
-std::map<std::string, std::vector<harness::Plot>> measurePaths(harness::Device& device, const harness::Context& context,
-                                                               const FrameOptions& options, int repeat, Report& report);
+// anchor, accumulated, and with 64 samples, and of the published passes. Then times of frames that accumulate. Throws
+// InputError where the models are missing.
+void measurePaths(harness::Device& device, const harness::Context& context, const FrameOptions& options, int repeat,
+                  Report& report);
 
 // ---- thesis: tables 5.1 to 5.3 of Whelan 2009, a head and a light that turn, pass by pass
 

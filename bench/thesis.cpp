@@ -27,7 +27,6 @@
 #include "raster/passes.h"
 #include "raster/rasterizer.h"
 #include "raster/shadow.h"
-#include "scene.h"
 #include "scene/turn.h"
 #include "scene/vector.h"
 #include "shared/pellucid_shared.h"

@@ -121,7 +121,6 @@ WholeFrame inTurn(const std::string& name, const Variant& first, const Variant& 
              b(commandBuffer);
            },
            second.output},
-          first.name,
           second.name};
 }
 

@@ -117,12 +117,6 @@ void addModelOptions(const Command& command, CaptureOptions& options, SceneUse u
   ShadowDrawing& shadow = options.raster.shadow;
   command.option("model", options.model, "glTF file, .glb or .gltf");
   models.option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit");
-  const CommandOption time = models
-                                 .option("--time", options.gltf.time,
-                                         "seconds into the file's animation (default: nodes as they stand)")
-                                 .notNegative();
-  models.option("--animation", options.gltf.animation, "name or number from 0 (default: the first)")
-      .needs(time);
   models.flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material");
   models.option("--camera", options.gltf.camera, "name of one of the file's cameras, or auto");
   models.option("--view", options.view, "X,Y,Z: direction from the center to the auto camera");

@@ -149,17 +149,6 @@ std::vector<GivenOption> Command::given() const {
 
 bool Command::isGiven(const std::string& option) const { return app_->count(option) > 0; }
 
-void Command::parse(std::vector<std::string> arguments) const {
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-  try {
-    app_->parse(arguments);
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
-  }
-}
-
-DetachedCommand::DetachedCommand(const char* name) : app_(std::make_shared<CLI::App>("", name)) {}
-
 bool runCommandLine(int argc, char** argv, const char* help, const char* footer,
                     const std::function<void(const Command&)>& addCommands) {
   CLI::App app(help, "pellucid");

@@ -108,22 +108,9 @@ public:
   std::vector<GivenOption> given() const;
   bool isGiven(const std::string& option) const;
 
-  // Throws UsageError.
-  void parse(std::vector<std::string> arguments) const;
-
 private:
   CLI::App* app_;
   std::string group_;
-};
-
-// A command of its own, which parse() takes the options of.
-class DetachedCommand {
-public:
-  explicit DetachedCommand(const char* name);
-  operator Command() const { return Command(*app_); }
-
-private:
-  std::shared_ptr<CLI::App> app_;
 };
 
 // Runs the command line. False: the words were wrong and stderr says how.

@@ -203,7 +203,7 @@ Scene proceduralScene(const Options& options, SceneHash& hash) {
   setIor(scene.solids->materials, options.scene);
   hash.add(parameters);
   scene.capture =
-      options.like.empty() ? renderCapture(*scene.solids, parameters, nullptr) : readCapture(options.like);
+      options.like.empty() ? renderCapture(*scene.solids, parameters) : readCapture(options.like);
   if (scene.solids->materials.size() > scene.capture.materials.size())
     throw InputError(
         options.like, "materials",

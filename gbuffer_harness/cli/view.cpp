@@ -35,7 +35,6 @@ void addViewCommand(const Command& app) {
 #include "scene/model.h"
 #include "view/application.h"
 #include "view/perception.h"
-#include "view/session.h"
 
 namespace pellucid::harness {
 
@@ -50,7 +49,7 @@ struct Options {
   std::string script, screenshot, save;
   std::string perception, participant, answers;
   float exposure = 0;
-  std::optional<ToneMap> toneMap;  // absent: a saved view's own, else none
+  std::optional<ToneMap> toneMap;  // absent: none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
@@ -59,22 +58,12 @@ const std::set<std::string> kNotOfTheScene = {
     "--validate",    "--frames",  "--script", "--screenshot", "--exposure",    "--perception",
     "--participant", "--answers", "--save",   "--tonemap",    "--help"};
 
-// The model comes first: behind an option that takes a list, it would be read as one more of its values.
+// Options of the scene that are given, and the model.
 std::vector<std::string> sceneArguments(const Command& command) {
-  std::vector<std::string> model, options;
-  for (const GivenOption& option : command.given()) {
-    if (kNotOfTheScene.count(option.name) > 0) continue;
-    for (const std::string& value : option.values) {
-      if (option.positional) {
-        model.push_back(std::filesystem::absolute(value).string());  // sessions are opened from anywhere
-        continue;
-      }
-      options.push_back(option.flag && value == "false" ? "--forward-z" : option.name);
-      if (!option.flag) options.push_back(value);
-    }
-  }
-  model.insert(model.end(), options.begin(), options.end());
-  return model;
+  std::vector<std::string> names;
+  for (const GivenOption& option : command.given())
+    if (kNotOfTheScene.count(option.name) == 0) names.push_back(option.positional ? option.values.front() : option.name);
+  return names;
 }
 
 bool isCapture(const std::string& path) {
@@ -82,17 +71,13 @@ bool isCapture(const std::string& path) {
   return extension == ".exr" || extension == ".json";
 }
 
-void refuseSceneOptions(const Command& command, const std::string& model, const char* kind) {
-  for (const std::string& argument : sceneArguments(command))
-    if (argument.rfind("--", 0) == 0)
-      throw UsageError(argument + ": " + model + " is a " + kind + ", whose scene is what it holds");
-}
-
 std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
-    refuseSceneOptions(command, scene.model, "capture");
+    for (const std::string& argument : sceneArguments(command))
+      if (argument.starts_with("--"))
+        throw UsageError(argument + ": " + scene.model + " is a capture, whose scene is what it holds");
     return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
   }
   if (isProcedural(command, scene))
@@ -127,61 +112,7 @@ SceneToView sceneOf(const Command& command, const Options& options) {
             if (exposure > 0) state.display.exposure = exposure;
             if (toneMap) state.display.toneMap = *toneMap;
             if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
-          },
-          sceneArguments(command)};
-}
-
-void parseScene(const Command& command, CaptureOptions& scene, const std::vector<std::string>& arguments,
-                const std::filesystem::path& file) {
-  addCaptureOptions(command, scene, SceneUse::Replay);
-  try {
-    command.parse(arguments);
-  } catch (const UsageError& error) {
-    throw InputError(file.string(), "scene", error.what());
-  }
-}
-
-// A saved view, opened with the options that its scene was first opened with.
-SceneToView savedView(const Options& given, const std::filesystem::path& path) {
-  const Session session = readSession(path);
-  const DetachedCommand command("view");
-  Options options = given;
-  options.scene = {};
-  parseScene(command, options.scene, session.scene, path);
-  std::vector<std::string>& set = options.settings.set;
-  set.insert(set.begin(), std::string("@").append((path.parent_path() / session.settings).string()));
-  SceneToView scene = sceneOf(command, options);
-  scene.start = [path, start = scene.start](ViewState& state) {
-    state = readSession(path, state).state;
-    start(state);
-  };
-  return scene;
-}
-
-// A file that is named in the panel: a saved view, or what the command line would have opened with its
-// options.
-SceneToView loaded(const Options& given, const std::filesystem::path& path) {
-  if (isSession(path)) return savedView(given, path);
-  const DetachedCommand command("view");
-  Options options = given;
-  const bool capture = isCapture(path.string());
-  const CaptureOptions before = given.scene;
-  options.scene = {};
-  std::vector<std::string> arguments = {path.string()};
-  if (!capture) {
-    // Options of models hold for every model.
-    const auto add = [&](const char* name, const std::string& value) {
-      arguments.push_back(name);
-      arguments.push_back(value);
-    };
-    add("--unit", before.unit);
-    add("--size", before.size);
-    for (const std::string& preset : before.presets) add("--material", preset);
-    for (const std::string& light : before.model.empty() ? std::vector<std::string>() : before.lights)
-      add("--light", light);
-  }
-  parseScene(command, options.scene, arguments, path);
-  return sceneOf(command, options);
+          }};
 }
 
 void setWindowSize(const std::string& text, ApplicationOptions& options) {
@@ -206,7 +137,6 @@ PerceptionOptions perceptionTest(const Command& command, const Options& options)
 }
 
 void view(const Command& command, const Options& options) {
-  const std::string& model = options.scene.model;
   if (options.noWindow && options.frames == 0) throw UsageError("--no-window: needs --frames");
   ApplicationOptions application;
   application.device = options.scene.device;
@@ -218,19 +148,14 @@ void view(const Command& command, const Options& options) {
   application.screenshot = options.screenshot;
   application.save = options.save;
   application.settingsText = settingsJson;
-  application.load = [&](const std::filesystem::path& path) { return loaded(options, path); };
   if (!options.perception.empty()) {
     application.perception = perceptionTest(command, options);
-  } else if (!model.empty() && isSession(model)) {
-    refuseSceneOptions(command, model, "saved view");
-    application.scene = savedView(options, model);
   } else {
     application.scene = sceneOf(command, options);
   }
   const ApplicationReport report = runApplication(application);
   std::printf("%s\n%d frames of the screen, %llu of the module\n", report.device.c_str(), report.frames,
               static_cast<unsigned long long>(report.recorded));
-  std::printf("%s", report.moving.table().c_str());
   for (const std::string& file : report.saved) std::printf("wrote %s\n", file.c_str());
 }
 
@@ -239,9 +164,9 @@ void view(const Command& command, const Options& options) {
 void addViewCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
   const Command command =
-      app.subcommand("view", "Look at a model, a scene, a capture or a saved view, and change it");
+      app.subcommand("view", "Look at a model, a scene or a capture, and change it");
   addCaptureOptions(command, options->scene, SceneUse::Replay);
-  command.describe("model", "glTF file (.glb, .gltf), capture (.exr, .json) or saved view (.view.json)");
+  command.describe("model", "glTF file (.glb, .gltf) or capture (.exr, .json)");
   options->settings.addTo(command);
   command.option("--window-size", options->windowSize, "WIDTHxHEIGHT in pixels");
   command
@@ -252,7 +177,7 @@ void addViewCommand(const Command& app) {
   command.option("--script", options->script, "input from a file (docs/thesis.md)");
   command.option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
   command.option("--save", options->save,
-                 "NAME.exr: at the end the capture, with settings, session, result and picture beside it");
+                 "NAME.exr: at the end the capture, with settings, result and picture beside it");
   command.option("--exposure", options->exposure, "factor; default: from the first picture").positive();
   addToneMapOption(command, options->toneMap);
   command.option("--perception", options->perception,

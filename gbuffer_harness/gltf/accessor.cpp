@@ -10,6 +10,27 @@ namespace pellucid::harness {
 
 namespace {
 
+// Calls visit with a value of the component type; false: there is no such type.
+template <class Visit>
+bool withType(int componentType, const Visit& visit) {
+  switch (componentType) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return visit(std::int8_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return visit(std::uint8_t());
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return visit(std::int16_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return visit(std::uint16_t());
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+      return visit(std::uint32_t());
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return visit(float());
+    default:
+      return false;
+  }
+}
+
 // Elements of an accessor that lie inside its buffer view.
 struct Elements {
   const unsigned char* first;
@@ -34,11 +55,12 @@ std::size_t bytesOf(int componentType) {
   return bytes;
 }
 
-// Elements of a type in the bytes that hold them. `name` is what describes them, `where` what holds the
-// bytes.
-Elements elementsIn(const GltfDocument& document, const GltfDocument::Bytes& bytes, std::size_t byteOffset,
-                    std::size_t stride, std::size_t count, const tinygltf::Accessor& type,
-                    const std::string& name, const std::string& where) {
+// Elements of a type in a buffer view. `name` is what describes them.
+Elements elementsInView(const GltfDocument& document, int view, std::size_t byteOffset, std::size_t count,
+                        const tinygltf::Accessor& type, const std::string& name) {
+  const GltfDocument::Bytes bytes = document.bufferView(view, name);
+  const std::size_t stride = document.model.bufferViews[static_cast<std::size_t>(view)].byteStride;
+  const std::string where = "bufferViews[" + std::to_string(view) + "]";
   Elements elements{nullptr, count, 0, componentsOf(type), type.componentType, type.normalized};
   const std::size_t size = bytesOf(elements.componentType) * static_cast<std::size_t>(elements.components);
   if (size == 0)
@@ -57,14 +79,6 @@ Elements elementsIn(const GltfDocument& document, const GltfDocument::Bytes& byt
                                        std::to_string(bytes.size) + " bytes of " + where);
   elements.first = bytes.data + byteOffset;
   return elements;
-}
-
-Elements elementsInView(const GltfDocument& document, int view, std::size_t byteOffset, std::size_t count,
-                        const tinygltf::Accessor& type, const std::string& name) {
-  const GltfDocument::Bytes bytes = document.bufferView(view, name);
-  return elementsIn(document, bytes, byteOffset,
-                    document.model.bufferViews[static_cast<std::size_t>(view)].byteStride, count, type, name,
-                    "bufferViews[" + std::to_string(view) + "]");
 }
 
 double component(const Elements& elements, std::size_t element, int i) {
@@ -98,11 +112,7 @@ public:
       : name_("accessors[" + std::to_string(index) + "]"),
         accessor_(document.model.accessors[document.index(index, document.model.accessors.size(), field,
                                                           "accessors")]) {
-    const auto unpacked = document.accessors.find(index);
-    if (unpacked != document.accessors.end())
-      base_ = elementsIn(document, {unpacked->second.data(), unpacked->second.size()}, 0, 0, accessor_.count,
-                         accessor_, name_, "what is unpacked");
-    else if (accessor_.bufferView >= 0 || !accessor_.sparse.isSparse)
+    if (accessor_.bufferView >= 0 || !accessor_.sparse.isSparse)
       base_ = elementsInView(document, accessor_.bufferView, accessor_.byteOffset, accessor_.count, accessor_,
                              name_);
     if (accessor_.sparse.isSparse) readSparse(document);

@@ -9,27 +9,6 @@
 
 namespace pellucid::harness {
 
-// Calls visit with a value of the component type; false: there is no such type.
-template <class Visit>
-bool withType(int componentType, const Visit& visit) {
-  switch (componentType) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-      return visit(std::int8_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return visit(std::uint8_t());
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-      return visit(std::int16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return visit(std::uint16_t());
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-      return visit(std::uint32_t());
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return visit(float());
-    default:
-      return false;
-  }
-}
-
 struct AccessorValues {
   int components = 0;  // 1..4, or 16 of a matrix, column by column
   std::vector<float> data;

@@ -21,13 +21,9 @@ constexpr std::size_t kMaxDepth = 100;  // tinygltf reads extensions and extras 
 
 // Read, and drawn as the extension says.
 const std::set<std::string> kRead = {
-    "EXT_mesh_gpu_instancing",
-    "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_ior",
-    "KHR_materials_scatter",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_volume_scatter",
@@ -77,8 +73,8 @@ const Rule kRules[] = {
     {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials", kArray},
     {"scenes,nodes,meshes,accessors,bufferViews,buffers,cameras,images,textures,samplers,materials.*",
      kObject},
-    {"skins,animations", kArray},
-    {"skins,animations.*", kObject},
+    {"skins", kArray},
+    {"skins.*", kObject},
     {"scenes.*.nodes", kArray},
     {"scenes.*.nodes.*", kIndex},
     {"nodes.*.children", kArray},
@@ -210,26 +206,12 @@ GltfJson parseGltfJson(const std::string& file, std::string_view text) {
   return json;
 }
 
-// The document without what this program reads itself and tinygltf is stricter about than glTF: animations
-// and skins, buffers that only stand in for compressed ones, and indices that lie in a Draco stream.
+// The document without animations, which captures have none of, and without skins, which this program reads
+// itself: tinygltf is stricter about both than glTF.
 GltfJson forTinyGltf(const GltfJson& json) {
   GltfJson result = json;
   result.erase("animations");
   result.erase("skins");
-  if (const auto buffers = result.find("buffers"); buffers != result.end())
-    for (GltfJson& buffer : *buffers)
-      if (isFallbackBuffer(buffer))
-        buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
-  const auto accessors = result.find("accessors");
-  if (accessors == result.end() || !result.contains("meshes")) return result;
-  for (const GltfJson& mesh : result["meshes"])
-    for (const GltfJson& primitive : mesh["primitives"]) {
-      const auto indices = primitive.find("indices");
-      if (indices == primitive.end() || !extensionOf(primitive, "KHR_draco_mesh_compression")) continue;
-      const std::size_t i = *indices;
-      // tinygltf takes no indices without a view. The stream's indices take precedence over the view's.
-      if (i < accessors->size() && !(*accessors)[i].contains("bufferView")) (*accessors)[i]["bufferView"] = 0;
-    }
   return result;
 }
 
@@ -399,7 +381,6 @@ void checkBuffers(const GltfDocument& document, Session& session, std::size_t bi
   if (buffers == document.json.end()) return;
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     const GltfJson& buffer = (*buffers)[i];
-    if (isFallbackBuffer(buffer)) continue;
     const std::string field = "buffers[" + std::to_string(i) + "].";
     const std::size_t claimed = buffer["byteLength"];
     const std::string uri = buffer.value("uri", "");
@@ -434,10 +415,6 @@ const GltfJson* extensionOf(const GltfJson& value, const char* name) {
   return found != extensions->end() && found->is_object() ? &*found : nullptr;
 }
 
-bool isFallbackBuffer(const GltfJson& buffer) {
-  return !buffer.contains("uri") && extensionOf(buffer, "EXT_meshopt_compression");
-}
-
 bool isDrawn(const std::string& extension) { return kRead.count(extension) != 0; }
 
 void GltfDocument::fail(const std::string& field, const std::string& sentence) const {
@@ -451,34 +428,23 @@ std::size_t GltfDocument::index(int index, std::size_t size, const std::string& 
   return static_cast<std::size_t>(index);
 }
 
-std::size_t GltfDocument::integer(const GltfJson& object, const char* key, const std::string& field) const {
+int GltfDocument::reference(const GltfJson& object, const char* key, const std::string& field) const {
   const auto found = object.find(key);
   if (found == object.end()) fail(field + "." + key, "is missing");
   if (!found->is_number_unsigned()) fail(field + "." + key, found->dump() + " is not an integer >= 0");
-  return *found;
-}
-
-int GltfDocument::reference(const GltfJson& object, const char* key, const std::string& field) const {
-  return static_cast<int>(std::min<std::size_t>(integer(object, key, field), 1u << 30));
+  return static_cast<int>(std::min<std::size_t>(found->get<std::size_t>(), 1u << 30));
 }
 
 GltfDocument::Bytes GltfDocument::bufferView(int viewIndex, const std::string& field) const {
   const tinygltf::BufferView& view =
       model.bufferViews[index(viewIndex, model.bufferViews.size(), field + ".bufferView", "buffer views")];
-  if (const auto unpacked = views.find(viewIndex); unpacked != views.end())
-    return {unpacked->second.data(), unpacked->second.size()};
-  return bytesOf(view.buffer, view.byteOffset, view.byteLength,
-                 "bufferViews[" + std::to_string(viewIndex) + "]");
-}
-
-GltfDocument::Bytes GltfDocument::bytesOf(int buffer, std::size_t byteOffset, std::size_t byteLength,
-                                          const std::string& field) const {
-  const auto& data = model.buffers[index(buffer, model.buffers.size(), field + ".buffer", "buffers")].data;
-  if (byteOffset > data.size() || byteLength > data.size() - byteOffset)
-    fail(field, "byteOffset " + std::to_string(byteOffset) + " and byteLength " + std::to_string(byteLength) +
-                    " leave the " + std::to_string(data.size()) + " bytes of buffers[" +
-                    std::to_string(buffer) + "]");
-  return {data.data() + byteOffset, byteLength};
+  const std::string name = "bufferViews[" + std::to_string(viewIndex) + "]";
+  const auto& data = model.buffers[index(view.buffer, model.buffers.size(), name + ".buffer", "buffers")].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+    fail(name, "byteOffset " + std::to_string(view.byteOffset) + " and byteLength " +
+                   std::to_string(view.byteLength) + " leave the " + std::to_string(data.size()) +
+                   " bytes of buffers[" + std::to_string(view.buffer) + "]");
+  return {data.data() + view.byteOffset, view.byteLength};
 }
 
 GltfDocument readGltf(const fs::path& path) {
@@ -519,7 +485,6 @@ GltfDocument readGltf(const fs::path& path) {
     document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
   document.images = std::move(session.images);
   document.images.resize(document.model.images.size());
-  unpack(document);
   return document;
 }
 

@@ -17,7 +17,6 @@
 #include "capture/material.h"
 #include "common/error.h"
 #include "common/far_origin.h"
-#include "gltf/accessor.h"
 #include "gltf/document.h"
 #include "gltf/material.h"
 #include "gltf/mesh.h"
@@ -85,11 +84,9 @@ struct PlacedNode {
   glm::dmat4 world;  // worldFromNode
 };
 
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-
-// Every node of the default scene, as it stands in `pose`, parents before children. Throws InputError when a
+// Every node of the default scene, parents before children. Throws InputError when a
 // transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
-std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pose) {
+std::vector<PlacedNode> placeNodes(const GltfDocument& document) {
   const tinygltf::Model& model = document.model;
   if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
   const std::size_t scene =
@@ -115,44 +112,11 @@ std::vector<PlacedNode> placeNodes(const GltfDocument& document, const Pose& pos
   while (!pending.empty()) {
     const Pending next = pending.back();
     pending.pop_back();
-    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, pose, next.node);
+    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, next.node);
     placed.push_back({next.node, world});
     push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
   }
   return placed;
-}
-
-// nodeFromInstance of each instance of the node's mesh (EXT_mesh_gpu_instancing); without instances the
-// identity.
-std::vector<glm::dmat4> readInstances(const GltfDocument& document, std::size_t node) {
-  const GltfJson* extension = extensionOf(document.json["nodes"][node], kInstancing);
-  if (!extension) return {glm::dmat4(1)};
-  const std::string field = "nodes[" + std::to_string(node) + "].extensions." + kInstancing + ".attributes";
-  const auto attributes = extension->find("attributes");
-  if (attributes == extension->end() || !attributes->is_object()) document.fail(field, "is missing");
-  std::optional<std::size_t> count;
-  const auto read = [&](const char* name, int components) -> std::optional<AccessorValues> {
-    if (!attributes->contains(name)) return std::nullopt;
-    const std::string where = field + "." + name;
-    AccessorValues values =
-        readFloats(document, document.reference(*attributes, name, field), components, components, where);
-    if (count && *count != values.count())
-      document.fail(where, std::to_string(values.count()) + " are not the " + std::to_string(*count) +
-                               " of the other attributes");
-    count = values.count();
-    return values;
-  };
-  const auto translation = read("TRANSLATION", 3), rotation = read("ROTATION", 4), scale = read("SCALE", 3);
-  if (!count) document.fail(field, "has none of TRANSLATION, ROTATION and SCALE");
-  std::vector<glm::dmat4> result;
-  for (std::size_t i = 0; i < *count; ++i) {
-    Parts parts;
-    if (translation) parts.translation.assign((*translation)[i], (*translation)[i] + 3);
-    if (rotation) parts.rotation.assign((*rotation)[i], (*rotation)[i] + 4);
-    if (scale) parts.scale.assign((*scale)[i], (*scale)[i] + 3);
-    result.push_back(matrixOf(document, parts, field + ".ROTATION[" + std::to_string(i) + "]"));
-  }
-  return result;
 }
 
 constexpr std::size_t kMaxMaterials = 255;  // 8 bits, 0 is none
@@ -200,10 +164,8 @@ private:
   const GltfDocument& document_;
   const GltfOptions& options_;
   GltfScene scene_;
-  Pose pose_;
   std::vector<std::optional<glm::dmat4>> worldFromNode_;  // of the nodes in the scene
   std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
-  std::uint32_t furtherObjects_ = 0;
   std::map<int, Drawn> drawn_;                    // by glTF material
   std::vector<PellucidMaterial> compiled_;        // of scene_.model.materials
   std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
@@ -297,25 +259,15 @@ void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
       document_.index(source.mesh, document_.model.meshes.size(), nodeName + ".mesh", "meshes");
   const tinygltf::Mesh& mesh = document_.model.meshes[index];
   MeshPose pose;
-  const auto animated = pose_.weights.find(node);
-  pose.weights = animated != pose_.weights.end() ? animated->second
-                 : source.weights.empty()        ? mesh.weights
-                                                 : source.weights;
+  pose.weights = source.weights.empty() ? mesh.weights : source.weights;
   if (source.skin != -1) pose.joints = readJoints(document_, source.skin, worldFromNode_, nodeName + ".skin");
-  // Instances are bodies of their own.
-  bool isFirst = true;
-  for (const glm::dmat4& instance : readInstances(document_, node)) {
-    pose.worldFromMesh = world * instance;
-    const auto object =
-        static_cast<std::uint32_t>(isFirst ? node : document_.model.nodes.size() + furtherObjects_++);
-    isFirst = false;
-    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-      const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
-      if (source.skin != -1 && !isBound(mesh.primitives[i]))
-        document_.fail(nodeName + ".skin",
-                       field + " has no JOINTS_0 and WEIGHTS_0 by which it would be bound; bake the pose");
-      addPrimitive(mesh.primitives[i], field, pose, object);
-    }
+  pose.worldFromMesh = world;
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    const std::string field = "meshes[" + std::to_string(index) + "].primitives[" + std::to_string(i) + "]";
+    if (source.skin != -1 && !isBound(mesh.primitives[i]))
+      document_.fail(nodeName + ".skin",
+                     field + " has no JOINTS_0 and WEIGHTS_0 by which it would be bound; bake the pose");
+    addPrimitive(mesh.primitives[i], field, pose, static_cast<std::uint32_t>(node));
   }
 }
 
@@ -416,9 +368,8 @@ GltfScene Loader::load() {
   model.metersPerUnit = options_.metersPerUnit;
   sayIgnored();
   checkPresetNames();
-  pose_ = readPose(document_, options_.time, options_.animation, scene_.warnings);
   worldFromNode_.resize(document_.model.nodes.size());
-  const std::vector<PlacedNode> placed = placeNodes(document_, pose_);
+  const std::vector<PlacedNode> placed = placeNodes(document_);
   for (const auto& [node, world] : placed) worldFromNode_[node] = world;
   for (const auto& [node, world] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,9 +17,6 @@ struct GltfOptions {
   // "default": triangles without a material.
   std::map<std::string, std::string> presets;
   double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own
-  // Seconds into the animation that is read, >= 0; absent: the nodes as they stand.
-  std::optional<double> time;
-  std::string animation;  // name or number from 0; empty: the first
   // Name of the camera that looks, by which the world's origin is chosen where the scene is far from its own;
   // empty: the file's first, and the model's center without one or for "auto".
   std::string camera;

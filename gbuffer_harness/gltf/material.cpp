@@ -15,7 +15,7 @@ namespace pellucid::harness {
 
 namespace {
 
-// Result of KHR_materials_volume, _volume_scatter, _diffuse_transmission, _scatter and _transmission;
+// Result of KHR_materials_volume, _volume_scatter, _diffuse_transmission and _transmission;
 // docs/captures.md.
 struct Scattering {
   std::optional<MaterialSource> medium;  // nothing: opaque
@@ -28,8 +28,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
                      *kTransmission = "KHR_materials_transmission", *kVolume = "KHR_materials_volume",
-                     *kVolumeScatter = "KHR_materials_volume_scatter", *kScatter = "KHR_materials_scatter",
-                     *kIor = "KHR_materials_ior";
+                     *kVolumeScatter = "KHR_materials_volume_scatter", *kIor = "KHR_materials_ior";
 
 // An attenuation color of 0 or 1 would be an infinite or no coefficient.
 constexpr double kDarkest = 1e-4, kClearest = 0.999;
@@ -145,11 +144,9 @@ private:
   double boundaryIor() const;
   void setThinWall();
   void setAbsorbing();
-  void setScattering(const Rgb& multiscatter, double strength, double phaseG, double g, double ior);
+  void setScattering(const Rgb& multiscatter, double g, double ior);
   void readDiffuse(const Extension& diffuse);
   void readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse);
-  void readScatter(const Extension& scatter, const Extension& transmission);
-  void readThinScatter(const Extension& scatter, double transmission, double strength);
 
   const GltfDocument& document_;
   const GltfJson& json_;
@@ -212,16 +209,16 @@ void Reader::setAbsorbing() {
   surface_.lobes = SurfaceLobes::Apart;
 }
 
-// phaseG: of the albedo's inversion. Textures make no difference within a medium: it has their mean.
-void Reader::setScattering(const Rgb& multiscatter, double strength, double phaseG, double g, double ior) {
+// Textures make no difference within a medium: it has their mean.
+void Reader::setScattering(const Rgb& multiscatter, double g, double ior) {
   CoefficientMaterial medium{};
   const Rgb sigma = extinction(), textured = mean();
   for (std::size_t i = 0; i < 3; ++i) {
-    const double albedo = singleScatteringAlbedo(strength * multiscatter[i] * textured[i], phaseG);
+    const double albedo = singleScatteringAlbedo(multiscatter[i] * textured[i]);
     medium.scattering[i] = albedo * sigma[i];
     medium.absorption[i] = (1 - albedo) * sigma[i];
   }
-  medium.g = std::clamp(g, -kLargestG, kLargestG);
+  medium.g = g;
   medium.ior = ior;
   result_.medium = medium;
 }
@@ -277,7 +274,7 @@ void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Ext
     warn("diffuseTransmissionColorFactor is black: no light comes back from the medium");
   const auto scatterTexture = scatter.texture("multiscatterColorTexture");
   setMap({scatterTexture}, std::nullopt);
-  setScattering(multiscatter, 1, 0, g, diffuse ? 1 : boundaryIor());
+  setScattering(multiscatter, g, diffuse ? 1 : boundaryIor());
   setMap({color, scatterTexture}, strength);
   multiply(surface_.addedColor, multiscatter);
   scale(surface_.addedColor, entering);
@@ -292,84 +289,17 @@ void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Ext
   }
 }
 
-void Reader::readThinScatter(const Extension& scatter, double transmission, double strength) {
-  const double g = scatter.number("scatterAnisotropy", 0, -1, 1);
-  const double forward = (1 + g) / 2;
-  if (isBlack(surface_.addedColor))
-    warn("KHR_materials_scatter.multiscatterColorFactor is black: what scatters is lost");
-  scale(surface_.baseColor, 1 - transmission);
-  scale(surface_.addedColor, transmission * strength * (forward > 0 ? forward : 1));
-  if (!(forward > 0)) {
-    warn("KHR_materials_scatter.scatterAnisotropy is -1: a thin wall only reflects, and is drawn opaque");
-    return;
-  }
-  surface_.backscatter = (1 - g) / (1 + g);
-  setThinWall();
-}
-
-void Reader::readScatter(const Extension& scatter, const Extension& transmission) {
-  const double entering = transmission.number("transmissionFactor", 0, 0, 1);
-  const double strength = scatter.number("scatterStrengthFactor", 0, 0, 1);
-  const Rgb multiscatter = scatter.color("multiscatterColorFactor", {1, 1, 1});
-  if (transmission.has("transmissionTexture"))
-    warn("KHR_materials_transmission.transmissionTexture is ignored, its factor is not");
-  if (entering == 0 || strength == 0) {
-    warn(std::string("KHR_materials_scatter has no effect: ") +
-         (entering == 0 ? "KHR_materials_transmission.transmissionFactor is 0, its default"
-                        : "scatterStrengthFactor is 0, its default"));
-    return;
-  }
-  if (isVolume_ && !(distance_ < kInfinity)) {
-    warn(
-        "KHR_materials_scatter has no effect: a volume without KHR_materials_volume.attenuationDistance is "
-        "clear");
-    return;
-  }
-  const auto strengthTexture = scatter.texture("scatterStrengthTexture"),
-             color = scatter.texture("multiscatterColorTexture");
-  surface_.addedColor = multiscatter;
-  setMap({color}, strengthTexture);
-  if (!isVolume_) return readThinScatter(scatter, entering, strength);
-  const double g = scatter.number("scatterAnisotropy", 0, -1, 1);
-  setScattering(multiscatter, strength, std::clamp(g, -kLargestG, kLargestG), g, boundaryIor());
-  if (isBlack(multiscatter))
-    warn("KHR_materials_scatter.multiscatterColorFactor is black: the medium only absorbs");
-  // Light passes the surface's color as it enters and as it leaves.
-  if (isBlack(surface_.baseColor))
-    warn("pbrMetallicRoughness.baseColorFactor is black: no light enters what KHR_materials_scatter fills");
-  const Rgb base = surface_.baseColor;
-  multiply(surface_.addedColor, base);
-  multiply(surface_.addedColor, base);
-  scale(surface_.addedColor, entering * strength);
-  const GltfJson metallic = json_.value("pbrMetallicRoughness", GltfJson::object());
-  if (const auto texture =
-          readTextureUse(document_, metallic, "baseColorTexture", field_ + ".pbrMetallicRoughness"))
-    setMap({color, texture, texture}, strengthTexture);
-  scale(surface_.baseColor, 1 - entering);
-  if (entering < 1) {
-    surface_.lobes = SurfaceLobes::Apart;
-    surface_.backscatter = 1;
-  }
-}
-
 Scattering Reader::read() {
   readVolume();
-  const auto diffuse = find(kDiffuse), transmission = find(kTransmission), scatter = find(kScatter),
-             volumeScatter = find(kVolumeScatter);
-  if (scatter && diffuse)
-    warn("KHR_materials_scatter excludes KHR_materials_diffuse_transmission, and is ignored");
-  else if (scatter && !transmission)
-    warn("KHR_materials_scatter has no effect without KHR_materials_transmission");
+  const auto diffuse = find(kDiffuse), volumeScatter = find(kVolumeScatter);
   if (volumeScatter)
     readVolumeScatter(*volumeScatter, diffuse);
   else if (diffuse)
     readDiffuse(*diffuse);
-  else if (scatter && transmission)
-    readScatter(*scatter, *transmission);
-  else if (isVolume_ && !scatter)
+  else if (isVolume_)
     warn(
-        "a clear medium without KHR_materials_diffuse_transmission, _volume_scatter or _scatter is not "
-        "subsurface scattering; it is drawn opaque");
+        "a clear medium without KHR_materials_diffuse_transmission or _volume_scatter is not subsurface "
+        "scattering; it is drawn opaque");
   return std::move(result_);
 }
 
@@ -430,10 +360,10 @@ std::optional<Rgb> thinTransmittance(const GltfDocument& document, const std::st
 
 }  // namespace
 
-double singleScatteringAlbedo(double multiscatter, double g) {
+double singleScatteringAlbedo(double multiscatter) {
   const double m = std::clamp(multiscatter, 0.0, 1.0);
   const double s = 4.09712 + 4.20863 * m - std::sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
-  return std::clamp((1 - s * s) / (1 - g * s * s), 0.0, 1.0);
+  return std::clamp(1 - s * s, 0.0, 1.0);
 }
 
 std::string materialName(const GltfDocument& document, int index) {

@@ -14,10 +14,9 @@
 
 namespace pellucid::harness {
 
-// Kulla & Conty 2017, as KHR_materials_scatter prints it: the single-scattering albedo whose half-space,
-// without Fresnel boundaries, reflects `multiscatter`, in [0, 1], where the phase function has the mean
-// cosine `g`.
-double singleScatteringAlbedo(double multiscatter, double g = 0);
+// Kulla & Conty 2017: the single-scattering albedo whose half-space, without Fresnel boundaries, reflects
+// `multiscatter`, in [0, 1], where scattering is isotropic.
+double singleScatteringAlbedo(double multiscatter);
 
 struct GltfMaterial {
   Surface surface;  // without its material index and textures

@@ -1,8 +1,7 @@
-// Places of a glTF file's nodes at a time of its animation.
+// Places of a glTF file's nodes.
 #pragma once
 
 #include <glm/mat4x4.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,28 +10,8 @@
 
 namespace pellucid::harness {
 
-// Translation, rotation (x, y, z, w) and scale of a node or instance.
-struct Parts {
-  std::vector<double> translation = {0, 0, 0}, rotation = {0, 0, 0, 1}, scale = {1, 1, 1};
-};
-
-// Throws InputError naming `rotationField` for a quaternion of length 0.
-glm::dmat4 matrixOf(const GltfDocument& document, const Parts& parts, const std::string& rotationField);
-
-// Changes by an animation, by node; all other nodes stand as in the file.
-struct Pose {
-  std::map<std::size_t, glm::dmat4> parentFromNode;
-  std::map<std::size_t, std::vector<double>> weights;  // of morph targets
-};
-
-// The nodes as they stand in the file, or as an animation has them at `seconds`: its first or last
-// key before or after its keys. `animation`: a name or a number from 0; empty: the first. Adds sentences to
-// `warnings`. Throws InputError for an animation that is not there or broken.
-Pose readPose(const GltfDocument& document, std::optional<double> seconds, const std::string& animation,
-              std::vector<std::string>& warnings);
-
-// Throws InputError for a transform that is not made of finite numbers.
-glm::dmat4 parentFromNode(const GltfDocument& document, const Pose& pose, std::size_t node);
+// The node as it stands in the file. Throws InputError for a transform that is not made of finite numbers.
+glm::dmat4 parentFromNode(const GltfDocument& document, std::size_t node);
 
 // The matrices that take vertices of a mesh, as its joints bind them, to the world. worldFromNode: by node.
 // Throws InputError naming the skin, or `field`, what refers to it.

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "capture/write.h"
-#include "cli/numbers.h"
 #include "common/png.h"
 #include "sample/renderer.h"
 #include "window/window.h"
@@ -16,8 +15,7 @@ using namespace pellucid::sample;
 namespace {
 
 struct Options {
-  std::string file, output, capture, device;
-  GltfOptions gltf;
+  std::string output, capture, device;
   int frames = 0, width = 640, height = 640, mapTexels = 1024;
   double turn = 0, cell = 1.5;
   bool headless = false, validate = false;
@@ -42,15 +40,6 @@ void addOptions(CLI::App& app, Options& o) {
   const auto number = [&](const char* name, auto& value, auto low, auto high, const char* what) {
     app.add_option(name, value, what)->check(CLI::Range(low, high))->capture_default_str();
   };
-  const auto material = [&o](const std::vector<std::string>& given) {
-    for (const std::string& text : given) {
-      const Assignment set = parseAssignment("--material", text);
-      o.gltf.presets[set.key] = set.value;
-    }
-    return true;
-  };
-  app.add_option("scene", o.file, "glTF file (.glb, .gltf); default: a procedural head");
-  app.add_option("--material", material, "NAME=PRESET of a file's material, * of all others")->take_all();
   app.add_option("-o", o.output, "PNG of the last frame");
   app.add_option("--capture", o.capture, "EXR with manifest of the last frame, for pellucid replay");
   app.add_option("--device", o.device, "part of the Vulkan device's name; default: the fastest kind");
@@ -61,8 +50,7 @@ void addOptions(CLI::App& app, Options& o) {
   number("--width", o.width, 1, 8192, "pixels");
   number("--height", o.height, 1, 8192, "pixels");
   number("--shadow-size", o.mapTexels, 16, 4096, "texels across a shadow map");
-  number("--meters-per-unit", o.gltf.metersPerUnit, 1e-6, 1e6, "of a file");
-  number("--cell", o.cell, 1.0, 20.0, "mm between vertices of the procedural head");
+  number("--cell", o.cell, 1.0, 20.0, "mm between vertices of the head");
   number("--gather", s.gatherSamples, 0, 64, "samples of Pellucid's gather, a multiple of 4; 0: no gather");
   number("--scale", s.scale, 0.1, 1.0, "rendered pixels per pixel of the picture along each side");
   number("--exposure", s.exposure, 1e-6, 1e6, "factor");
@@ -97,8 +85,7 @@ void handleKeys(GLFWwindow* window, Settings& settings, ViewCamera& camera) {
 }
 
 void run(Options o) {
-  Scene scene = o.file.empty() ? headScene(o.cell, o.mapTexels) : fileScene(o.file, o.gltf, o.mapTexels);
-  for (const std::string& note : scene.notes) std::fprintf(stderr, "%s\n", note.c_str());
+  Scene scene = headScene(o.cell, o.mapTexels);
   DeviceOptions wanted{o.device, o.validate};
   wanted.computeQueue = o.settings.ownQueue;
   wanted.pushes = true;  // frames in flight have no pools of their own

@@ -279,20 +279,13 @@ VkPipeline Renderer::meshPipeline(const DrawPass& pass, VkCullModeFlags cull) {
 void Renderer::drawScene(VkCommandBuffer commands, const DrawPass& pass, const glm::dmat4& clipFromWorld,
                          VkCullModeFlags cull) {
   mesh_.bind(commands);
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, meshPipeline(pass, cull));
+  bind(commands, {});
   for (const Part& part : scene_.model.parts) {
     const Surface& surface = scene_.model.surfaces[part.surface];
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                      meshPipeline(pass, surface.doubleSided ? VkCullModeFlags{VK_CULL_MODE_NONE} : cull));
-    const auto texture = [&](int index) {
-      const std::size_t i = index < 0 ? mesh_.white() : static_cast<std::size_t>(index);
-      return Bound{mesh_.image(i).use(), mesh_.sampler(i)};
-    };
-    bind(commands, std::array{texture(surface.texture), texture(surface.normalMap)});
-    const float roughness = surface.material ? 0.45f : 0.8f;  // the loader has none
+    const float roughness = surface.material ? 0.45f : 0.8f;
     const DrawConstants constants = {
-        clipFromWorld,
-        {toGlm(surface.baseColor), surface.alphaCutoff},
-        {surface.material, roughness, surface.normalMap < 0 ? 0 : surface.normalScale, 0}};
+        clipFromWorld, {toGlm(surface.baseColor), 0}, {surface.material, roughness, 0, 0}};
     vkCmdPushConstants(commands, layout_, kStages, 0, sizeof constants, &constants);
     vkCmdDrawIndexed(commands, part.indexCount, 1, part.firstIndex, 0, 0);
   }

@@ -50,24 +50,6 @@ Scene sceneOf(Model model, const Vector3& toCamera, int mapTexels) {
 
 }  // namespace
 
-Scene fileScene(const std::filesystem::path& file, const GltfOptions& options, int mapTexels) {
-  GltfScene loaded = loadGltf(file, options);
-  if (loaded.model.materials.empty())
-    throw InputError(file.string(), "materials", "none scatters light; --material NAME=PRESET gives one");
-  Scene scene = sceneOf(std::move(loaded.model), {0.35, 0.05, 1}, mapTexels);
-  if (!scene.model.cameras.empty()) scene.camera.lens = scene.model.cameras.front();
-  if (scene.camera.lens.orthographic)
-    throw InputError(file.string(), "camera", "is orthographic; the sample draws perspectives");
-  scene.notes = std::move(loaded.notes);
-  for (const std::string& warning : loaded.warnings) scene.notes.push_back(warning);
-  const auto hasMap = [](const Surface& surface) { return surface.normalMap >= 0; };
-  const auto isBare = [](const Vertex& vertex) { return vertex.tangent[3] == 0; };
-  const auto bare = std::count_if(scene.model.vertices.begin(), scene.model.vertices.end(), isBare);
-  if (bare > 0 && std::any_of(scene.model.surfaces.begin(), scene.model.surfaces.end(), hasMap))
-    scene.notes.push_back(std::to_string(bare) + " vertices have no tangent: no normal map is used there");
-  return scene;
-}
-
 Scene headScene(double cell, int mapTexels) {
   SceneParameters head;
   head.name = "head";

@@ -1,11 +1,8 @@
 // The meshes that are drawn, and the lights on them.
 #pragma once
 
-#include <filesystem>
-#include <string>
 #include <vector>
 
-#include "gltf/gltf.h"
 #include "raster/framing.h"
 #include "raster/view_camera.h"
 #include "sample/frame.h"
@@ -24,12 +21,7 @@ struct Scene {
   std::vector<SceneLight> lights;  // a sun, three spots and a point light
   Harmonics ambient;               // of a sky
   std::vector<PellucidMaterial> materials;
-  std::vector<std::string> notes;  // sentences for a person
 };
-
-// A glTF file under the sample's own lights, which replace the file's. mapTexels: across a shadow map. Throws
-// InputError as loadGltf() does, and where nothing scatters light.
-Scene fileScene(const std::filesystem::path& file, const GltfOptions& options, int mapTexels);
 
 // The head of the procedural scene "head" on a floor. cell: mm between the mesh's vertices, 1..20.
 Scene headScene(double cell, int mapTexels);

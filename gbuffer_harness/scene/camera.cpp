@@ -18,11 +18,9 @@ void checkRange(const ClipRange& range) {
   }
 }
 
-double forward(Handedness handedness) { return handedness == Handedness::Right ? -1.0 : 1.0; }
-
 }  // namespace
 
-Matrix perspective(double verticalFov, double aspect, const ClipRange& range, Handedness handedness) {
+Matrix perspective(double verticalFov, double aspect, const ClipRange& range) {
   checkRange(range);
   if (!(range.nearPlane > 0)) {
     throw InputError("", "projection",
@@ -46,11 +44,10 @@ Matrix perspective(double verticalFov, double aspect, const ClipRange& range, Ha
     b = range.reversed ? n * f / (f - n) : -n * f / (f - n);
   }
   const double scale = 1 / std::tan(verticalFov / 2);
-  const double s = forward(handedness);
-  return {scale / aspect, 0, 0, 0, 0, -scale, 0, 0, 0, 0, s * a, s, 0, 0, b, 0};
+  return {scale / aspect, 0, 0, 0, 0, -scale, 0, 0, 0, 0, -a, -1, 0, 0, b, 0};
 }
 
-Matrix orthographic(double width, double height, const ClipRange& range, Handedness handedness) {
+Matrix orthographic(double width, double height, const ClipRange& range) {
   checkRange(range);
   if (std::isinf(range.farPlane)) {
     throw InputError("", "projection", "an orthographic projection needs a finite far plane");
@@ -63,22 +60,19 @@ Matrix orthographic(double width, double height, const ClipRange& range, Handedn
   const double span = range.farPlane - range.nearPlane;
   const double a = range.reversed ? -1 / span : 1 / span;
   const double b = range.reversed ? range.farPlane / span : -range.nearPlane / span;
-  const double s = forward(handedness);
-  return {2 / width, 0, 0, 0, 0, -2 / height, 0, 0, 0, 0, s * a, 0, 0, 0, b, 1};
+  return {2 / width, 0, 0, 0, 0, -2 / height, 0, 0, 0, 0, -a, 0, 0, 0, b, 1};
 }
 
-Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up, Handedness handedness) {
+Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up) {
   const glm::dvec3 position = toGlm(eye);
   const glm::dvec3 axis = glm::normalize(toGlm(target) - position);
   glm::dvec3 upward = toGlm(up);
   if (glm::length(glm::cross(axis, upward)) < 1e-6 * glm::length(upward)) {
     upward = std::abs(axis.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 0, 1);
   }
-  // In a left-handed world the cross product's components have the other sign of "right".
-  const glm::dvec3 right =
-      glm::normalize(handedness == Handedness::Right ? glm::cross(axis, upward) : glm::cross(upward, axis));
-  const glm::dvec3 top = handedness == Handedness::Right ? glm::cross(right, axis) : glm::cross(axis, right);
-  const glm::dvec3 depth = axis * forward(handedness);
+  const glm::dvec3 right = glm::normalize(glm::cross(axis, upward));
+  const glm::dvec3 top = glm::cross(right, axis);
+  const glm::dvec3 depth = -axis;
   return {right.x,
           top.x,
           depth.x,
@@ -97,14 +91,13 @@ Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up, Hand
           1};
 }
 
-double deviceDepth(const Matrix& clipFromView, double viewZ, Handedness handedness) {
-  const double z = forward(handedness) * viewZ;
-  return (clipFromView[10] * z + clipFromView[14]) / (clipFromView[11] * z + clipFromView[15]);
+double deviceDepth(const Matrix& clipFromView, double viewZ) {
+  return (clipFromView[10] * -viewZ + clipFromView[14]) / (clipFromView[11] * -viewZ + clipFromView[15]);
 }
 
-double clearDepth(const Matrix& clipFromView, Handedness handedness) {
+double clearDepth(const Matrix& clipFromView) {
   // Depth is monotonic in front of the eye, so two distances tell the direction.
-  return deviceDepth(clipFromView, 2, handedness) > deviceDepth(clipFromView, 1, handedness) ? 1 : 0;
+  return deviceDepth(clipFromView, 2) > deviceDepth(clipFromView, 1) ? 1 : 0;
 }
 
 Matrix multiply(const Matrix& a, const Matrix& b) { return fromGlm(toGlm(a) * toGlm(b)); }

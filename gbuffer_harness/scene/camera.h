@@ -1,4 +1,4 @@
-// Cameras in every convention an engine may use, in double precision.
+// Cameras in double precision.
 #pragma once
 
 #include <array>
@@ -9,9 +9,6 @@ namespace pellucid::harness {
 
 using Vector3 = std::array<double, 3>;
 
-// Sign of the view axis: right-handed looks along -z (glTF, OpenGL), left-handed along +z (Direct3D).
-enum class Handedness { Right, Left };
-
 // Planar distances of the clip planes along the view axis, scene units, 0 < nearPlane < farPlane
 // (orthographic: nearPlane may be <= 0). farPlane may be infinity for a perspective.
 struct ClipRange {
@@ -21,23 +18,20 @@ struct ClipRange {
 
 // clipFromView of a symmetric frustum, Vulkan clip space: y down, depth 0..1, w > 0 in front.
 // verticalFov: radians, (0, pi). aspect: width / height. Throws InputError on values outside.
-Matrix perspective(double verticalFov, double aspect, const ClipRange& range,
-                   Handedness handedness = Handedness::Right);
+Matrix perspective(double verticalFov, double aspect, const ClipRange& range);
 
 // clipFromView of a box `width` by `height` scene units around the axis. Throws InputError.
-Matrix orthographic(double width, double height, const ClipRange& range,
-                    Handedness handedness = Handedness::Right);
+Matrix orthographic(double width, double height, const ClipRange& range);
 
-// Rigid viewFromWorld of an eye looking at target. `up` need not be perpendicular; when it is
-// parallel to the axis another one is taken. In a left-handed world the result is left-handed too.
-Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up,
-              Handedness handedness = Handedness::Right);
+// Rigid viewFromWorld of an eye looking at target, along -z. `up` need not be perpendicular; when it is
+// parallel to the axis another one is taken.
+Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up);
 
 // Device depth of a planar distance through clipFromView; not clamped.
-double deviceDepth(const Matrix& clipFromView, double viewZ, Handedness handedness = Handedness::Right);
+double deviceDepth(const Matrix& clipFromView, double viewZ);
 
 // Device depth of "nothing there": that of the end of the range where distances grow.
-double clearDepth(const Matrix& clipFromView, Handedness handedness = Handedness::Right);
+double clearDepth(const Matrix& clipFromView);
 
 // a * b.
 Matrix multiply(const Matrix& a, const Matrix& b);

@@ -49,7 +49,6 @@ struct SceneModel {
 
   std::vector<MaterialSource> materials = {PresetMaterial{"skin1"}};
   std::function<glm::dvec3(const glm::dvec3&)> albedo;  // by surface position; absent: no albedo image
-  std::function<double(const Ray&)> exactThickness;     // along a view ray; 0: no hit
 };
 
 // Checked values of a scene's options.

@@ -25,7 +25,7 @@ public:
   Renderer(const SceneModel& model, const SceneParameters& parameters)
       : model_(model), parameters_(parameters), bias_(1e-5 * model.radius) {}
 
-  Capture render(Image* exactThickness) const;
+  Capture render() const;
   ShadowMap shadowMap(const Light& light) const;
 
 private:
@@ -158,7 +158,7 @@ ShadowMap Renderer::shadowMap(const Light& light) const {
   return map;
 }
 
-Capture Renderer::render(Image* exactThickness) const {
+Capture Renderer::render() const {
   const int width = parameters_.width;
   const int height = parameters_.height;
   const float empty = nothing(model_.camera, parameters_.depthEncoding);
@@ -179,40 +179,15 @@ Capture Renderer::render(Image* exactThickness) const {
   capture.materials = model_.materials;
   capture.lights = model_.lights;
 
-  if (exactThickness) *exactThickness = model_.exactThickness ? Image(width, height, 1) : Image();
   Progress progress("casting " + parameters_.name, static_cast<std::uint64_t>(height));
   parallelRows(height, 0, [&](int y) {
-    for (int x = 0; x < width; ++x) {
-      writePixel(capture, x, y);
-      if (exactThickness && model_.exactThickness) {
-        *exactThickness->at(x, y) =
-            static_cast<float>(model_.exactThickness(model_.camera.ray(x + 0.5, y + 0.5, width, height)));
-      }
-    }
+    for (int x = 0; x < width; ++x) writePixel(capture, x, y);
     progress.advance();
   });
   if (parameters_.shadowSize > 0) {
     for (Light& light : capture.lights) light.shadowMaps = {shadowMap(light)};
   }
   return capture;
-}
-
-// Mirrors world and view space in z: what an engine with a left-handed world hands over.
-void makeLeftHanded(Capture& capture) {
-  const glm::dmat4 mirror(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
-  const Matrix flip = fromGlm(mirror);
-  capture.clipFromView = multiply(capture.clipFromView, flip);
-  capture.viewFromWorld = multiply(flip, multiply(capture.viewFromWorld, flip));
-  for (std::size_t i = 2; i < capture.normal.data.size(); i += 3) capture.normal.data[i] *= -1;
-  for (Light& light : capture.lights) {
-    light.position[2] *= -1;
-    light.direction[2] *= -1;
-    for (ShadowMap& map : light.shadowMaps) {
-      map.clipFromWorld = multiply(map.clipFromWorld, flip);
-      // Shadow views stay right-handed whatever the world is: viewZ is along -z of this matrix.
-      map.viewFromWorld = multiply(*map.viewFromWorld, flip);
-    }
-  }
 }
 
 }  // namespace
@@ -265,10 +240,8 @@ glm::dvec3 unshadowedIrradiance(const Light& light, const glm::dvec3& point, con
   return color * e;
 }
 
-Capture renderCapture(const SceneModel& model, const SceneParameters& parameters, Image* exactThickness) {
-  Capture capture = Renderer(model, parameters).render(exactThickness);
-  if (parameters.handedness == Handedness::Left) makeLeftHanded(capture);
-  return capture;
+Capture renderCapture(const SceneModel& model, const SceneParameters& parameters) {
+  return Renderer(model, parameters).render();
 }
 
 }  // namespace pellucid::harness

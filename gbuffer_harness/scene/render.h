@@ -22,6 +22,6 @@ bool reaches(const std::vector<Object>& objects, const Light& light, const glm::
 glm::dvec3 unshadowedIrradiance(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
 // The capture of a scene model, whose parameters say size and encodings.
-Capture renderCapture(const SceneModel& model, const SceneParameters& parameters, Image* exactThickness);
+Capture renderCapture(const SceneModel& model, const SceneParameters& parameters);
 
 }  // namespace pellucid::harness

@@ -94,8 +94,8 @@ SceneModel sceneModel(const SceneParameters& parameters) {
   return model;
 }
 
-Capture makeScene(const SceneParameters& parameters, Image* exactThickness) {
-  return renderCapture(sceneModel(parameters), parameters, exactThickness);
+Capture makeScene(const SceneParameters& parameters) {
+  return renderCapture(sceneModel(parameters), parameters);
 }
 
 Vector3 sceneCenter(const SceneParameters& parameters) {

@@ -33,9 +33,6 @@ struct SceneParameters {
   std::optional<bool> orthographic;  // absent: as the scene prefers
   bool reversedZ = false;
   bool infiniteFar = false;  // perspective only
-  // Left mirrors the world in z, so that viewFromWorld stays rigid. Manifests are right-handed: such
-  // a capture is for use in memory.
-  Handedness handedness = Handedness::Right;
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_VIEW_Z;  // DEVICE or VIEW_Z
   bool normalsInViewSpace = false;
 
@@ -63,10 +60,8 @@ struct SceneInfo {
 std::vector<SceneInfo> listScenes();
 
 // The same parameters give the same capture, bit for bit, whatever the number of threads. The scene
-// unit is 1 mm. exactThickness, where given, receives the closed-form length (mm) of the view ray
-// inside the first object, 0 where there is none, one channel; empty when the scene has no closed
-// form. Throws InputError naming the field when a name, size, option or combination is not known.
-Capture makeScene(const SceneParameters& parameters, Image* exactThickness = nullptr);
+// unit is 1 mm. Throws InputError naming the field when a name, size, option or combination is not known.
+Capture makeScene(const SceneParameters& parameters);
 
 // World; what a Turn goes round and an Aim looks at. Throws likewise.
 Vector3 sceneCenter(const SceneParameters& parameters);

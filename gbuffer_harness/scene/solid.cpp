@@ -8,57 +8,8 @@ namespace pellucid::harness {
 
 namespace {
 
-double evaluate(const std::vector<double>& c, double x) {
-  double value = 0;
-  for (auto it = c.rbegin(); it != c.rend(); ++it) value = value * x + *it;
-  return value;
-}
-
-// The one root between a and b, where the polynomial is monotonic and changes sign.
-double bracketedRoot(const std::vector<double>& c, const std::vector<double>& derivative, double a,
-                     double b) {
-  const bool rising = evaluate(c, b) > 0;
-  double x = (a + b) / 2;
-  for (int i = 0; i < 100; ++i) {
-    const double value = evaluate(c, x);
-    ((value > 0) == rising ? b : a) = x;
-    double next = x - value / evaluate(derivative, x);
-    if (!(next > a && next < b)) next = (a + b) / 2;
-    if (std::abs(next - x) <= 1e-15 * std::abs(next)) return next;
-    x = next;
-  }
-  return x;
-}
-
-}  // namespace
-
-std::vector<double> realRoots(const std::vector<double>& c, double low, double high) {
-  if (c.size() < 2) return {};
-  std::vector<double> derivative;
-  for (std::size_t i = 1; i < c.size(); ++i) derivative.push_back(c[i] * static_cast<double>(i));
-
-  // Between neighboring extrema the polynomial is monotonic, so each sign change is one root.
-  std::vector<double> limits = realRoots(derivative, low, high);
-  limits.insert(limits.begin(), low);
-  limits.push_back(high);
-  std::vector<double> roots;
-  for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
-    const double a = limits[i];
-    const double b = limits[i + 1];
-    if (a < b && (evaluate(c, a) > 0) != (evaluate(c, b) > 0))
-      roots.push_back(bracketedRoot(c, derivative, a, b));
-  }
-  return roots;
-}
-
-namespace {
-
-
-std::optional<Span> beginningAfter(double tMin, std::initializer_list<Span> spans) {
-  for (const Span& span : spans) {
-    if (span.enter >= tMin) return span;
-  }
-  return std::nullopt;
+std::optional<Span> beginningAfter(double tMin, const Span& span) {
+  return span.enter >= tMin ? std::optional(span) : std::nullopt;
 }
 
 }  // namespace
@@ -70,11 +21,10 @@ bool Solid::blocks(const Ray& ray, double tMin, double tMax) const {
 
 namespace {
 
-// The span that holds the ray's origin.
+// The span that holds the ray's origin; of convex solids, which have one span.
 std::optional<Span> spanAround(const Solid& solid, const Ray& ray) {
-  std::optional<Span> span = solid.firstSpan(ray, -kInfinity);
-  while (span && span->exit <= 0) span = solid.firstSpan(ray, span->exit);
-  return span && span->enter <= 0 ? span : std::nullopt;
+  const std::optional<Span> span = solid.firstSpan(ray, -kInfinity);
+  return span && span->enter <= 0 && span->exit > 0 ? span : std::nullopt;
 }
 
 }  // namespace
@@ -114,7 +64,7 @@ std::optional<Span> Polyhedron::firstSpan(const Ray& ray, double tMin) const {
     }
   }
   if (!(span.enter < span.exit)) return std::nullopt;
-  return beginningAfter(tMin, {span});
+  return beginningAfter(tMin, span);
 }
 
 glm::dvec3 Polyhedron::normal(const glm::dvec3& point) const {
@@ -136,57 +86,11 @@ std::optional<Span> Ellipsoid::firstSpan(const Ray& ray, double tMin) const {
   const double rest = 1 - glm::dot(nearest, nearest);
   if (!(rest > 0)) return std::nullopt;
   const double half = std::sqrt(rest / square);
-  return beginningAfter(tMin, {{middle - half, middle + half}});
+  return beginningAfter(tMin, {middle - half, middle + half});
 }
 
 glm::dvec3 Ellipsoid::normal(const glm::dvec3& point) const {
   return glm::normalize((point - center_) / (radii_ * radii_));
-}
-
-std::optional<Span> HollowSphere::firstSpan(const Ray& ray, double tMin) const {
-  const glm::dvec3 toCenter = center_ - ray.origin;
-  const double middle = glm::dot(toCenter, ray.direction);
-  const glm::dvec3 nearest = toCenter - middle * ray.direction;
-  const double square = glm::dot(nearest, nearest);
-  if (!(square < outer_ * outer_)) return std::nullopt;
-  const double outer = std::sqrt(outer_ * outer_ - square);
-  if (square >= inner_ * inner_) return beginningAfter(tMin, {{middle - outer, middle + outer}});
-  const double inner = std::sqrt(inner_ * inner_ - square);
-  return beginningAfter(tMin, {{middle - outer, middle - inner}, {middle + inner, middle + outer}});
-}
-
-glm::dvec3 HollowSphere::normal(const glm::dvec3& point) const {
-  const glm::dvec3 fromCenter = point - center_;
-  const double radius = glm::length(fromCenter);
-  return fromCenter * ((radius > (outer_ + inner_) / 2 ? 1 : -1) / radius);
-}
-
-std::optional<Span> Torus::firstSpan(const Ray& ray, double tMin) const {
-  // With the origin moved to the point nearest the center (dot(o, d) = 0), |p|^2 = |o|^2 + s^2 and
-  // the surface (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (a.p)^2) is a quartic in s.
-  const double middle = glm::dot(center_ - ray.origin, ray.direction);
-  const glm::dvec3 origin = ray.at(middle) - center_;
-  const double reach = (major_ + minor_) * (major_ + minor_) - glm::dot(origin, origin);
-  if (!(reach > 0)) return std::nullopt;
-  const double half = std::sqrt(reach);
-
-  const double height = glm::dot(axis_, origin);
-  const double slope = glm::dot(axis_, ray.direction);
-  const double k = glm::dot(origin, origin) + major_ * major_ - minor_ * minor_;
-  const double m = 4 * major_ * major_;
-  const std::vector<double> roots = realRoots({k * k - m * (glm::dot(origin, origin) - height * height),
-                                               2 * m * height * slope, 2 * k - m * (1 - slope * slope), 0, 1},
-                                              -half * 1.001, half * 1.001);
-  for (std::size_t i = 0; i + 1 < roots.size(); i += 2) {
-    if (middle + roots[i] >= tMin) return Span{middle + roots[i], middle + roots[i + 1]};
-  }
-  return std::nullopt;
-}
-
-glm::dvec3 Torus::normal(const glm::dvec3& point) const {
-  const glm::dvec3 p = point - center_;
-  const glm::dvec3 inPlane = p - glm::dot(axis_, p) * axis_;
-  return glm::normalize(p - glm::normalize(inPlane) * major_);
 }
 
 std::optional<Span> DistanceField::clipToBox(const Ray& ray) const {

@@ -1,4 +1,4 @@
-// Solids that a ray can be intersected with: analytic ones and distance fields. Double precision.
+// Solids that a ray can be intersected with: polyhedra, ellipsoids and distance fields. Double precision.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,10 +9,6 @@
 namespace pellucid::harness {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Roots in [low, high], ascending, of c[0] + c[1] x + ... + c[n] x^n, to the precision of double
-// arithmetic. Roots of even multiplicity (a ray that only touches) may be left out.
-std::vector<double> realRoots(const std::vector<double>& c, double low, double high);
 
 struct Ray {
   glm::dvec3 origin, direction;  // unit direction
@@ -71,33 +67,6 @@ public:
 
 private:
   glm::dvec3 center_, radii_;
-};
-
-// The solid between two concentric spheres.
-class HollowSphere : public Solid {
-public:
-  HollowSphere(const glm::dvec3& center, double outerRadius, double innerRadius)
-      : center_(center), outer_(outerRadius), inner_(innerRadius) {}
-
-  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
-  glm::dvec3 normal(const glm::dvec3& point) const override;
-
-private:
-  glm::dvec3 center_;
-  double outer_, inner_;
-};
-
-class Torus : public Solid {
-public:
-  Torus(const glm::dvec3& center, const glm::dvec3& axis, double majorRadius, double minorRadius)
-      : center_(center), axis_(axis), major_(majorRadius), minor_(minorRadius) {}
-
-  std::optional<Span> firstSpan(const Ray& ray, double tMin) const override;
-  glm::dvec3 normal(const glm::dvec3& point) const override;
-
-private:
-  glm::dvec3 center_, axis_;
-  double major_, minor_;
 };
 
 // A solid given by a function that is negative inside, found by sphere tracing (Hart 1996) and a

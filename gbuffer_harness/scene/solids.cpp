@@ -8,7 +8,6 @@ namespace pellucid::harness {
 
 namespace {
 
-
 // Of a shadow map around what it covers.
 constexpr double kMargin = 1.1;
 
@@ -43,15 +42,39 @@ SceneModel backLit(const SceneParameters& parameters, const OptionValues& option
   return model;
 }
 
-// Distance of the ray's line from the origin, squared.
-double squaredDistanceToOrigin(const Ray& ray) {
-  const glm::dvec3 moment = glm::cross(ray.origin, ray.direction);
-  return glm::dot(moment, moment);
-}
+// Between concentric spheres around the origin.
+class HollowSphere : public DistanceField {
+public:
+  HollowSphere(double outer, double inner)
+      : DistanceField(glm::dvec3(-1.01 * outer), glm::dvec3(1.01 * outer), 1e-3 * (outer - inner)),
+        outer_(outer),
+        inner_(inner) {}
+  double distance(const glm::dvec3& p) const override {
+    const double r = glm::length(p);
+    return std::max(r - outer_, inner_ - r);
+  }
 
-double halfChord(double radius, double squaredDistance) {
-  return std::sqrt(std::max(0.0, radius * radius - squaredDistance));
-}
+private:
+  double outer_, inner_;
+};
+
+// Around the origin.
+class Torus : public DistanceField {
+public:
+  Torus(const glm::dvec3& axis, double major, double minor)
+      : DistanceField(glm::dvec3(-1.01 * (major + minor)), glm::dvec3(1.01 * (major + minor)), 1e-3 * minor),
+        axis_(axis),
+        major_(major),
+        minor_(minor) {}
+  double distance(const glm::dvec3& p) const override {
+    const double height = glm::dot(axis_, p);
+    return std::hypot(glm::length(p - height * axis_) - major_, height) - minor_;
+  }
+
+private:
+  glm::dvec3 axis_;
+  double major_, minor_;
+};
 
 SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
@@ -59,9 +82,6 @@ SceneModel buildSlab(const SceneParameters& parameters, const OptionValues& opti
   const double thickness = options["thickness"];
   model.endless = true;
   addBox(model, -thickness / 2 * axes[2], {kInfinity, kInfinity, thickness / 2}, axes);
-  model.exactThickness = [normal = axes[2], thickness](const Ray& ray) {
-    return thickness / std::abs(glm::dot(ray.direction, normal));
-  };
   return model;
 }
 
@@ -73,11 +93,6 @@ SceneModel buildWedge(const SceneParameters& parameters, const OptionValues& opt
   const glm::dvec3 back(-std::sin(angle), 0, -std::cos(angle));
   addObject(model, std::make_unique<Polyhedron>(
                        std::vector<Polyhedron::Plane>{{{0, 0, 1}, 0}, {back, -edge * std::sin(angle)}}));
-  model.exactThickness = [edge, back](const Ray& ray) {
-    // From the front face z = 0 at distance x from the edge, the back face recedes at a known rate.
-    const double x = ray.at(-ray.origin.z / ray.direction.z).x - edge;
-    return std::max(0.0, x * -back.x / glm::dot(back, ray.direction));
-  };
   return model;
 }
 
@@ -86,9 +101,6 @@ SceneModel buildSphere(const SceneParameters& parameters, const OptionValues& op
   const double radius = options["radius"];
   addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(radius)));
   model.radius = kMargin * radius;
-  model.exactThickness = [radius](const Ray& ray) {
-    return 2 * halfChord(radius, squaredDistanceToOrigin(ray));
-  };
   return model;
 }
 
@@ -96,27 +108,17 @@ SceneModel buildHollowSphere(const SceneParameters& parameters, const OptionValu
   SceneModel model = backLit(parameters, options);
   const double outer = options["radius"];
   const double inner = outer * options["hollow"];
-  addObject(model, std::make_unique<HollowSphere>(glm::dvec3(0), outer, inner));
+  addObject(model, std::make_unique<HollowSphere>(outer, inner));
   model.radius = kMargin * outer;
-  model.exactThickness = [outer, inner](const Ray& ray) {
-    const double square = squaredDistanceToOrigin(ray);
-    return square < inner * inner ? halfChord(outer, square) - halfChord(inner, square)
-                                  : 2 * halfChord(outer, square);
-  };
   return model;
 }
 
 SceneModel buildTorus(const SceneParameters& parameters, const OptionValues& options) {
   SceneModel model = backLit(parameters, options);
   const double tilt = radians(options["tilt"]);
-  const Torus torus(glm::dvec3(0), {0, std::sin(tilt), std::cos(tilt)}, options["majorRadius"],
-                    options["majorRadius"] * options["tube"]);
-  addObject(model, std::make_unique<Torus>(torus));
+  addObject(model, std::make_unique<Torus>(glm::dvec3(0, std::sin(tilt), std::cos(tilt)), options["majorRadius"],
+                                           options["majorRadius"] * options["tube"]));
   model.radius = kMargin * options["majorRadius"] * (1 + options["tube"]);
-  model.exactThickness = [torus](const Ray& ray) {
-    const std::optional<Span> span = torus.firstSpan(ray, 0);
-    return span ? span->exit - span->enter : 0;
-  };
   return model;
 }
 
@@ -128,44 +130,6 @@ SceneModel buildTwoSheets(const SceneParameters& parameters, const OptionValues&
   addBox(model, {0, 0, -thickness / 2}, {kInfinity, kInfinity, thickness / 2});
   addObject(model, std::make_unique<Polyhedron>(std::vector<Polyhedron::Plane>{
                        {{-1, 0, 0}, 0}, {{0, 0, 1}, second}, {{0, 0, -1}, thickness - second}}));
-  model.exactThickness = [thickness](const Ray& ray) { return thickness / std::abs(ray.direction.z); };
-  return model;
-}
-
-SceneModel buildBlocked(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double thickness = options["thickness"];
-  const double extent = options["extent"];
-  addBox(model, {0, 0, -thickness / 2}, {0.4 * extent, 0.4 * extent, thickness / 2});
-  // The body stands on the line from the sheet's center to the light.
-  const glm::dvec3 towardLight =
-      -glm::dvec3(model.lights[0].direction[0], model.lights[0].direction[1], model.lights[0].direction[2]);
-  addObject(model, std::make_unique<Ellipsoid>(towardLight * (options["bodyDistance"] * extent),
-                                               glm::dvec3(options["bodyRadius"] * extent)));
-  return model;
-}
-
-SceneModel buildOccluder(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double thickness = options["thickness"];
-  const double extent = options["extent"];
-  addBox(model, {0, 0, -thickness / 2}, {0.2 * extent, 0.3 * extent, thickness / 2});
-  // Wide enough to fill the view, not to reach the light's way to the sheet.
-  addBox(model, {0, 0, -(options["distance"] + 0.25) * extent}, {0.8 * extent, 0.8 * extent, 0.25 * extent});
-  model.radius = 1.6 * extent;
-  return model;
-}
-
-SceneModel buildTwoMaterials(const SceneParameters& parameters, const OptionValues& options) {
-  SceneModel model = backLit(parameters, options);
-  const double extent = options["extent"];
-  addObject(model, std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(0.4, 0.4, 0.1) * extent));
-  model.radius = kMargin * 0.4 * extent;
-  model.objects[0].materialAt = [](const glm::dvec3& p) {
-    return static_cast<std::uint8_t>(p.x < 0 ? 1 : 2);
-  };
-  model.materials = {PresetMaterial{"skin1"}, PresetMaterial{"marble"}};
-  model.lights.push_back(lightAt(parameters, {1, 1, 1}, 1, extent));
   return model;
 }
 
@@ -235,25 +199,6 @@ std::vector<SceneDefinition> solidScenes() {
         "Thin sheet; behind its right half a second one stands in the light",
         {thin, {"gap", 15, 1e-3, 1e4, "between the sheets, mm"}, kLightAngle, kExtent}},
        buildTwoSheets},
-      {{"blocked",
-        "Thin sheet with a body between it and the light",
-        {thin,
-         {"bodyDistance", 0.5, 0.1, 0.8, "of the body's center from the sheet, extents"},
-         {"bodyRadius", 0.15, 0.01, 0.45, "extents"},
-         kLightAngle,
-         kExtent}},
-       buildBlocked},
-      {{"occluder",
-        "Thin sheet in front of a large body, lit from between them: the body must not block it",
-        {thin,
-         {"distance", 0.5, 0.3, 0.5, "of the body's front from the sheet, extents"},
-         withDefault(kLightAngle, 75),
-         kExtent}},
-       buildOccluder},
-      {{"two_materials",
-        "One body of two materials, border at x = 0, lit from both sides",
-        {kLightAngle, kExtent}},
-       buildTwoMaterials},
       {{"bodies",
         "Ball in the shadow of another of its medium, and a ball of two parts, lit from the left",
         {{"gap", 3, 1e-3, 1e3, "between the balls, mm"},

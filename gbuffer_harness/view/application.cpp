@@ -21,24 +21,25 @@
 #include "view/panel.h"
 #include "view/perception.h"
 #include "view/script.h"
-#include "view/session.h"
 #include "window/window.h"
 
 namespace pellucid::harness {
 
 namespace {
 
-// Writes the capture, the settings, the session and the result. `settings`: their text, which --set @FILE
-// reads. Throws InputError for a file that cannot be written.
-void saveView(const SavedFiles& files, const ViewFrames& frames, const std::string& settings,
-              Session session) {
-  writeWhole(files.capture, [&](const auto& file) { writeCapture(frames.capture(), file); });
-  writeWholeText(files.settings, settings);
-  session.settings = files.settings.filename().string();
-  writeWholeText(files.session, sessionJson(session));
-  writeWhole(files.result, [&](const auto& file) {
-    writeExr(file, frames.image(Shown::After), {"R", "G", "B"}, {});
-  });
+// The files beside a saved capture NAME.exr, whose replay with the settings gives the result bit for bit.
+struct SavedFiles {
+  std::filesystem::path capture, settings, result, picture;
+};
+
+// Throws InputError for another extension than .exr.
+SavedFiles savedFiles(const std::filesystem::path& capture) {
+  if (capture.extension() != ".exr" || capture.stem().empty())
+    throw InputError(capture.string(), "", "captures are saved as .exr");
+  const auto beside = [&](const char* extension) {
+    return std::filesystem::path(capture).replace_extension(extension);
+  };
+  return {capture, beside(".settings.json"), beside(".pellucid.exr"), beside(".png")};
 }
 
 bool isDown(unsigned char key) { return ImGui::GetIO().KeysDown[key]; }
@@ -182,7 +183,6 @@ private:
 
   // One frame of the screen; true where another one has to follow.
   bool drawFrame() {
-    const auto begin = std::chrono::steady_clock::now();
     ++passed_;
     ++report_.frames;
     gui_->poll(width_, height_);
@@ -210,16 +210,10 @@ private:
       gui_->record(commandBuffer);
       screen_->end(commandBuffer);
     });
-    if (changes.scene && !panel_.isError) addMoving(begin);
     bool again = changes.any();
     if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
     if (panel_.save) save(panel_.savePath);
     panel_.save = false;
-    if (panel_.load) {
-      load(panel_.loadPath);
-      again = true;
-    }
-    panel_.load = false;
     writePending();
     return again;
   }
@@ -234,15 +228,6 @@ private:
       report(error.what(), true);
     }
     panel_.colors = falseColorsOf(state_.display, *frames_);
-  }
-
-  void addMoving(std::chrono::steady_clock::time_point begin) {
-    FrameTime time;
-    time.frame = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    time.scene = frames_->sceneMilliseconds();
-    time.rasterizer = sumOf(frames_->sceneTimes()) / 1000;
-    time.module = sumOf(frames_->times()) / 1000;
-    report_.moving.add(time);
   }
 
   void report(const std::string& message, bool isError) {
@@ -297,7 +282,6 @@ private:
   bool isTest() const { return !options_.perception.scenes.empty(); }
   void carryOut(const ScriptLine& line);
   void open(const SceneToView& scene);
-  void load(const std::filesystem::path& file);
   void openQuestion();
   Changes askForColor();
   void writePending();
@@ -320,7 +304,6 @@ private:
   std::unique_ptr<ViewFrames> frames_;
   ScriptedInput script_;
   std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
-  std::vector<std::string> arguments_;  // that open the scene
   std::size_t scene_ = 0;               // of the perception test
   std::chrono::steady_clock::time_point sceneBegin_;
   bool spaceDown_ = false, testDone_ = false;
@@ -335,7 +318,6 @@ void Application::carryOut(const ScriptLine& line) {
     panel_.lightTurn = std::clamp(static_cast<int>(numberOf(line, 1)), 0, kLongestTurn);
     return;
   }
-  if (line.command == "open") return load(line.arguments.front());
   if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
   if (!window_) throw InputError(line.where, line.command, "needs a window");
   const auto side = [&](std::size_t argument) {
@@ -344,7 +326,6 @@ void Application::carryOut(const ScriptLine& line) {
   window_->resize(side(0), side(1));
 }
 
-// The open scene stays if the new scene cannot be read or rendered.
 void Application::open(const SceneToView& scene) {
   std::unique_ptr<Source> source = scene.open(device_);
   ViewState state = source->start();
@@ -355,20 +336,8 @@ void Application::open(const SceneToView& scene) {
   frames_ = std::move(frames);
   source_ = std::move(source);
   state_ = std::move(state);
-  arguments_ = scene.arguments;
   panel_.colors = falseColorsOf(state_.display, *frames_);
   panel_.cost = {};
-}
-
-void Application::load(const std::filesystem::path& file) {
-  try {
-    open(options_.load(file));
-    report("opened " + file.string(), false);
-  } catch (const InputError& error) {
-    report(error.what(), true);
-  } catch (const UsageError& error) {
-    report(error.what(), true);
-  }
 }
 
 // The perception test's scene, with a filter that changes nothing.
@@ -380,8 +349,7 @@ void Application::openQuestion() {
           state.settings.translucency.transmittanceFilter = {1, 1, 1};
           state.display.exposure = test.exposure;
           state.display.toneMap = test.toneMap;
-        },
-        {}});
+        }});
   sceneBegin_ = std::chrono::steady_clock::now();
 }
 
@@ -425,10 +393,13 @@ void Application::save(const std::filesystem::path& capture) {
       frames_->forgetHistory();
       frames_->update(state_, {.frame = true});
     }
-    saveView(files, *frames_, options_.settingsText(settingsFor(state_, Shown::After)),
-             {arguments_, "", state_});
+    writeWhole(files.capture, [&](const auto& file) { writeCapture(frames_->capture(), file); });
+    writeWholeText(files.settings, options_.settingsText(settingsFor(state_, Shown::After)));
+    writeWhole(files.result, [&](const auto& file) {
+      writeExr(file, frames_->image(Shown::After), {"R", "G", "B"}, {});
+    });
     savePicture(files.picture, screen_->image(0).download());
-    for (const auto& file : {files.capture, files.settings, files.session, files.result, files.picture})
+    for (const auto& file : {files.capture, files.settings, files.result, files.picture})
       report_.saved.push_back(file.string());
     report("saved " + files.capture.string(), false);
   } catch (const InputError& error) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "view/cost.h"
 #include "view/source.h"
 #include "view/state.h"
 
@@ -27,7 +26,6 @@ struct PerceptionOptions {
 struct SceneToView {
   std::function<std::unique_ptr<Source>(Device&)> open;
   std::function<void(ViewState&)> start;  // changes the state that the source begins with
-  std::vector<std::string> arguments;     // that open it again, for saved sessions
 };
 
 struct ApplicationOptions {
@@ -39,15 +37,13 @@ struct ApplicationOptions {
   std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
   SceneToView scene;
-  std::function<SceneToView(const std::filesystem::path&)> load;  // of a file that a person names later
-  PerceptionOptions perception;                                   // with scenes, `scene` is not looked at
+  PerceptionOptions perception;  // with scenes, `scene` is not looked at
 };
 
 struct ApplicationReport {
   std::string device;          // its description
   int frames = 0;              // of the screen that were drawn
   std::uint64_t recorded = 0;  // of the module
-  MovingTimes moving;
   std::vector<std::string> saved;  // files
 };
 

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
-#include <numeric>
-#include <utility>
+#include <map>
 
 namespace pellucid::harness {
 
 namespace {
 
 constexpr double kNewShare = 0.109;  // 1 - 2^(-1/6)
+constexpr double kForgotten = 0.01;  // microseconds, of a dispatch that frames no longer have
 
 constexpr std::uint32_t kSamples[] = {0, 4, 8, 16};  // of a probe, from the cheapest on
 constexpr std::uint32_t kBest = kSamples[3];
@@ -57,30 +56,17 @@ double sumOf(const std::vector<DispatchTime>& times) {
 bool CostHistory::add(std::uint64_t frame, const std::vector<DispatchTime>& times) {
   if (frame == last_) return false;
   last_ = frame;
-  const bool first = frames_ == 0;
-  frames_ = std::min(frames_ + 1, kFrames);
-  for (Dispatch& dispatch : dispatches_) dispatch.history.push_back(0);
+  std::map<std::string, double> now;
   for (const DispatchTime& time : times) {
-    const auto found = std::find_if(dispatches_.begin(), dispatches_.end(),
-                                    [&](const Dispatch& d) { return d.name == time.name; });
-    const bool isNew = found == dispatches_.end();
-    Dispatch& dispatch = isNew ? dispatches_.emplace_back() : *found;
-    if (isNew) {
-      dispatch.name = time.name;
-      dispatch.history.assign(frames_, 0);
-      if (!first) dispatch.smoothed = time.microseconds;
-    }
-    dispatch.history.back() += time.microseconds;
+    now[time.name] += time.microseconds;
+    if (std::none_of(dispatches_.begin(), dispatches_.end(), [&](const Dispatch& d) { return d.name == time.name; }))
+      dispatches_.push_back({time.name, time.microseconds, 0});
   }
   for (Dispatch& dispatch : dispatches_) {
-    if (dispatch.history.size() > kFrames) dispatch.history.pop_front();
-    const double now = dispatch.history.back();
-    dispatch.smoothed = first ? now : dispatch.smoothed + kNewShare * (now - dispatch.smoothed);
+    dispatch.last = now[dispatch.name];
+    dispatch.smoothed += kNewShare * (dispatch.last - dispatch.smoothed);
   }
-  // A dispatch that has not run for the whole history is forgotten.
-  std::erase_if(dispatches_, [](const Dispatch& d) {
-    return std::all_of(d.history.begin(), d.history.end(), [](double t) { return t == 0; });
-  });
+  std::erase_if(dispatches_, [](const Dispatch& d) { return d.smoothed < kForgotten; });
   return true;
 }
 
@@ -92,39 +78,8 @@ double CostHistory::smoothedSum() const {
 
 double CostHistory::lastSum() const {
   double sum = 0;
-  for (const Dispatch& dispatch : dispatches_) sum += dispatch.history.back();
+  for (const Dispatch& dispatch : dispatches_) sum += dispatch.last;
   return sum;
-}
-
-void MovingTimes::add(const FrameTime& time) {
-  if (leftOut_ < kLeftOut)
-    ++leftOut_;
-  else
-    times_.push_back(time);
-}
-
-std::string MovingTimes::table() const {
-  if (times_.empty()) return {};
-  const std::size_t count = times_.size();
-  char line[128];
-  std::snprintf(line, sizeof line, "%-26s%10s%10s%10s\n",
-                (std::to_string(count) + " moving frames, ms").c_str(), "mean", "median", "best");
-  std::string text = line;
-  const std::pair<const char*, double FrameTime::*> parts[] = {
-      {"whole frame", &FrameTime::frame},
-      {"scene", &FrameTime::scene},
-      {"rasterizer, GPU's clock", &FrameTime::rasterizer},
-      {"Pellucid, GPU's clock", &FrameTime::module}};
-  for (const auto& [name, part] : parts) {
-    std::vector<double> values;
-    for (const FrameTime& time : times_) values.push_back(time.*part);
-    std::sort(values.begin(), values.end());
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(count);
-    std::snprintf(line, sizeof line, "%-26s%10.3f%10.3f%10.3f\n", name, mean,
-                  (values[(count - 1) / 2] + values[count / 2]) / 2, values.front());
-    text += line;
-  }
-  return text;
 }
 
 void stepBudget(BudgetState& s, float measuredMs, float budgetMs) {

@@ -1,10 +1,7 @@
-// What frames cost: the dispatches of the last frames, a table of the frames in which the scene moves, and
-// the budget that holds a frame time.
+// What frames cost: their dispatches, and the budget that holds a frame time.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <string>
 #include <vector>
 
@@ -20,40 +17,17 @@ public:
   bool add(std::uint64_t frame, const std::vector<DispatchTime>& times);
 
   struct Dispatch {
-    std::string name;            // dispatches of one name in a frame add up
-    double smoothed = 0;         // microseconds; half of it is of the last 6 frames
-    std::deque<double> history;  // of each frame, the newest last, at most kFrames; 0 where it did not run
+    std::string name;     // dispatches of one name in a frame add up
+    double smoothed = 0;  // microseconds; half of it is of the last 6 frames
+    double last = 0;
   };
-  static constexpr std::size_t kFrames = 160;
   const std::vector<Dispatch>& dispatches() const { return dispatches_; }
   double smoothedSum() const;  // microseconds
   double lastSum() const;
-  std::size_t size() const { return frames_; }  // of the histories
 
 private:
   std::vector<Dispatch> dispatches_;
-  std::size_t frames_ = 0;
   std::uint64_t last_ = 0;
-};
-
-// Milliseconds.
-struct FrameTime {
-  double frame = 0;                   // wall clock, from input to the finished screen, without presenting it
-  double scene = 0;                   // wall clock, of drawing what the module reads
-  double rasterizer = 0, module = 0;  // the GPU's clock
-};
-
-class MovingTimes {
-public:
-  // The first frames do not count: drivers compile shaders, and images are allocated.
-  static constexpr std::size_t kLeftOut = 3;
-
-  void add(const FrameTime& time);
-  std::string table() const;  // mean, median and best of all parts; empty without frames
-
-private:
-  std::size_t leftOut_ = 0;
-  std::vector<FrameTime> times_;
 };
 
 // A setting that holds a frame time (Whelan 2009, 6.2.5), and what it was decided from.

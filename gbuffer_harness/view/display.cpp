@@ -82,7 +82,7 @@ DisplayPass::DisplayPass(Device& device, const RenderTarget& target)
 void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, Shown shown, const Push& push,
                        const ScreenRect& clip) const {
   const PellucidFrame& frame = frames.run(shown).frame();
-  const GpuImage* const host = frames.hostImage(shown);
+  const GpuImage* const truth = frames.truth();
   const auto orWhite = [&](const PellucidImage& image) { return image.view ? image : white_.use(); };
   const PellucidImage images[kBindings] = {frame.output,
                                            frame.irradiance,
@@ -90,7 +90,7 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
                                            frame.material,
                                            orWhite(frame.normal),
                                            frame.frontDepth,
-                                           host ? host->use() : white_.use()};
+                                           truth ? truth->use() : white_.use()};
   DescriptorWrites writes;
   for (std::uint32_t i = 0; i < kBindings; ++i)
     writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampler_, images[i]);
@@ -123,7 +123,7 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   push.exposure = display.exposure;
   push.low = low;
   push.high = high;
-  push.hasTruth = frames.hostImage(Shown::Truth) != nullptr;
+  push.hasTruth = frames.truth() != nullptr;
   push.isFalseColor = isFalseColor(shown);
   draw(commandBuffer, frames, shown, push, clip);
 }

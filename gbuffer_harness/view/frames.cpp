@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "capture/material.h"
-#include "metrics/eye.h"
 #include "metrics/spots.h"
 #include "raster/rasterizer.h"
 #include "replay/exposure.h"
@@ -73,25 +72,6 @@ Image composited(const Capture& capture, VkFormat format) {
   return result;
 }
 
-Image coveredTiles(int width, int height, const std::vector<std::uint8_t>& material) {
-  constexpr int kTile = 16;  // pixels: fine enough for an outline, coarse enough to read
-  Image result(width, height, 1);
-  for (int top = 0; top < height; top += kTile)
-    for (int left = 0; left < width; left += kTile) {
-      const int bottom = std::min(top + kTile, height), right = std::min(left + kTile, width);
-      int covered = 0;
-      for (int y = top; y < bottom; ++y)
-        for (int x = left; x < right; ++x) covered += material[pixelIndex(result, x, y)] != 0;
-      const float part = static_cast<float>(covered) / static_cast<float>((bottom - top) * (right - left));
-      for (int y = top; y < bottom; ++y)
-        std::fill(result.at(left, y), result.at(left, y) + (right - left), part);
-    }
-  return result;
-}
-
-// Reads one pixel, whatever the others hold.
-bool isOfOnePixel(Shown shown) { return shown != Shown::Tiles && shown != Shown::Isolated; }
-
 VkRect2D rectOf(int x, int y, int width, int height) {
   return {{x, y}, {static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)}};
 }
@@ -105,9 +85,6 @@ double coveredPartOf(const Scene& scene) {
 
 // Names the frame whose output or inputs a picture shows.
 Shown frameOf(Shown shown) { return shown == Shown::Through || shown == Shown::Debug ? shown : Shown::After; }
-
-// Names the image of the host that a picture needs.
-Shown hostImageOf(Shown shown) { return shown == Shown::Difference ? Shown::Truth : shown; }
 
 }  // namespace
 
@@ -182,7 +159,7 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   if (frames) {
     runs_.clear();
     images_.clear();
-    hostImages_.clear();
+    truth_.reset();
     materials_ = std::move(materials);
   }
   for (auto& [of, frame] : made) {
@@ -201,24 +178,13 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   scene_.capture.materials = sources;
   inputs_ = inputs;
   format_ = state.settings.outputFormat;
-  uploadHostImage(state.display.shown);
-  if (state.display.split) uploadHostImage(state.display.left);
+  uploadTruth();
 }
 
-void ViewFrames::uploadHostImage(Shown shown) {
-  shown = hostImageOf(shown);
-  const bool isHosts =
-      shown == Shown::Tiles || shown == Shown::Isolated || (shown == Shown::Truth && outline().truth);
-  if (!isHosts || hostImages_.count(shown) > 0) return;
-  auto image =
-      std::make_unique<GpuImage>(device_, outline().width, outline().height, VK_FORMAT_R32G32B32A32_SFLOAT);
-  image->upload(this->image(shown));
-  hostImages_[shown] = std::move(image);
-}
-
-const GpuImage* ViewFrames::hostImage(Shown shown) const {
-  const auto found = hostImages_.find(hostImageOf(shown));
-  return found != hostImages_.end() ? found->second.get() : nullptr;
+void ViewFrames::uploadTruth() {
+  if (!outline().truth || truth_) return;
+  truth_ = std::make_unique<GpuImage>(device_, outline().width, outline().height, VK_FORMAT_R32G32B32A32_SFLOAT);
+  truth_->upload(outline().truth->image);
 }
 
 const FrameRun& ViewFrames::run(Shown shown) const {
@@ -258,31 +224,16 @@ const std::vector<DispatchTime>& ViewFrames::sceneTimes() const {
 
 const Image& ViewFrames::image(Shown shown) const {
   const auto found = images_.find(shown);
-  return found != images_.end() ? found->second : images_.emplace(shown, made(shown)).first->second;
+  if (found != images_.end()) return found->second;
+  const Image image = pixels(shown, surfaces(), rectOf(0, 0, outline().width, outline().height));
+  return images_.emplace(shown, image).first->second;
 }
 
 std::vector<float> ViewFrames::value(Shown shown, int x, int y) const {
   const VkRect2D rect = rectOf(x, y, 1, 1);
-  const bool isHosts = hasSurfaces_ || images_.count(shown) > 0 || !isOfOnePixel(shown);
+  const bool isHosts = hasSurfaces_ || images_.count(shown) > 0;
   if (isHosts) return cropped(image(shown), x, y, 1, 1).data;
   return pixels(shown, scene_.drawn->surfaces(rect), rect).data;
-}
-
-Image ViewFrames::made(Shown shown) const {
-  const int width = outline().width, height = outline().height;
-  switch (shown) {
-    case Shown::Tiles:
-      return coveredTiles(width, height, material());
-    case Shown::Isolated: {
-      const std::vector<std::uint8_t> marks =
-          findIsolated(image(Shown::After), Surfaces(surfaces()), material()).marks;
-      Image result(width, height, 1);
-      std::copy(marks.begin(), marks.end(), result.data.begin());
-      return result;
-    }
-    default:
-      return pixels(shown, surfaces(), rectOf(0, 0, width, height));
-  }
 }
 
 // `surfaces`: of the pixels in `rect`.
@@ -338,9 +289,8 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
       std::copy(material.begin(), material.end(), result.data.begin());
       return result;
     }
-    default:  // whole images alone
-      return {};
   }
+  return {};
 }
 
 }  // namespace pellucid::harness

@@ -35,9 +35,7 @@ public:
 
   // The frame whose output is looked at; what shows inputs has that of Shown::After.
   const FrameRun& run(Shown shown) const;
-  // The host's image of what is shown, for the display: the truth of Truth and Difference, Tiles, Isolated.
-  // Null for others, and where the capture has no truth.
-  const GpuImage* hostImage(Shown shown) const;
+  const GpuImage* truth() const { return truth_.get(); }  // null: the capture has none
 
   // The shown picture before exposure: RGB, or one channel or three for false colors. Pixels without a
   // material: as a replay has them.
@@ -65,9 +63,8 @@ private:
   Frame make(const ViewState& state, Shown shown, const Capture& outline,
              const std::vector<PellucidMaterial>& materials,
              const std::shared_ptr<const InputImages>& inputs);
-  Image made(Shown shown) const;
   Image pixels(Shown shown, const Capture& surfaces, const VkRect2D& rect) const;
-  void uploadHostImage(Shown shown);
+  void uploadTruth();
 
   Device& device_;
   Source& source_;
@@ -78,7 +75,7 @@ private:
   double coveredPart_ = 0;
   std::vector<PellucidMaterial> materials_;
   std::shared_ptr<const InputImages> inputs_;
-  std::map<Shown, std::unique_ptr<GpuImage>> hostImages_;
+  std::unique_ptr<GpuImage> truth_;
   std::map<Shown, std::shared_ptr<const FrameRun>> runs_;  // of After, Through and Debug
   mutable std::map<Shown, Image> images_;                  // downloaded when first asked for
   std::vector<DispatchTime> times_;

@@ -201,12 +201,9 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
   changes.add(drawCost(state, panel, frames));
-  if (ImGui::CollapsingHeader("Open and save")) {
-    ImGui::InputText("file", panel.loadPath, sizeof panel.loadPath);
-    if (ImGui::Button("open")) panel.load = true;
-    hint("A model, a capture or a saved view, with the options of the command line.");
+  if (ImGui::CollapsingHeader("Save")) {
     ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
-    if (ImGui::Button("save capture, settings, session, result and picture")) panel.save = true;
+    if (ImGui::Button("save capture, settings, result and picture")) panel.save = true;
   }
   for (const std::string& warning : frames.warnings()) ImGui::TextWrapped("warning: %s", warning.c_str());
   ImGui::PopItemWidth();

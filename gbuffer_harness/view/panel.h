@@ -25,8 +25,6 @@ struct PanelState {
   bool isError = false;
   char savePath[512] = "out/view.exr";
   bool save = false;  // asked for in this frame
-  char loadPath[512] = "";
-  bool load = false;
   FalseColors colors;  // as they are drawn
 };
 

@@ -1,8 +1,9 @@
-// Materials: how they are described, and the values of each description.
+// Materials: presets, and the values of each description.
 #include <imgui.h>
 
 #include <algorithm>
 
+#include "capture/material.h"
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
 #include "view/panel.h"
@@ -23,31 +24,6 @@ bool drawPreset(MaterialSource& source) {
     source = PresetMaterial{name};
     changed = true;
     break;  // `preset` is gone
-  }
-  ImGui::EndCombo();
-  return changed;
-}
-
-// A kind that the material has no description of is gray, and its tooltip says why.
-bool drawKind(MaterialSource& source) {
-  const MaterialKind now = kindOf(source);
-  bool changed = false;
-  if (!ImGui::BeginCombo("described by", materialKindName(now))) return false;
-  for (const MaterialKind kind : kOfferedKinds) {
-    if (kind == now) {
-      ImGui::Selectable(materialKindName(kind), true);
-      continue;
-    }
-    try {
-      const MaterialSource other = asKind(source, kind);
-      if (!ImGui::Selectable(materialKindName(kind), false)) continue;
-      source = other;
-      changed = true;
-      break;
-    } catch (const InputError& error) {
-      ImGui::TextDisabled("%s", materialKindName(kind));
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", error.what());
-    }
   }
   ImGui::EndCombo();
   return changed;
@@ -105,7 +81,7 @@ struct DrawValues {
 bool drawValues(MaterialSource& source) {
   if (!std::holds_alternative<PresetMaterial>(source)) return std::visit(DrawValues{}, source);
   try {
-    MaterialSource values = asKind(source, MaterialKind::Coefficients);
+    MaterialSource values = coefficientsOf(source, "this material");
     if (!std::visit(DrawValues{}, values)) return false;
     source = values;
     return true;
@@ -126,8 +102,7 @@ Changes drawMaterials(ViewState& state) {
   if (last > 0) ImGui::SliderInt("index", &state.selectedMaterial, 0, last);
   state.selectedMaterial = std::clamp(state.selectedMaterial, 0, last);
   MaterialSource& source = state.materials[static_cast<std::size_t>(state.selectedMaterial)];
-  changes.materials |= drawKind(source);
-  if (kindOf(source) == MaterialKind::Preset) changes.materials |= drawPreset(source);
+  changes.materials |= drawPreset(source);
   changes.materials |= drawValues(source);
   ImGui::PopID();
   return changes;

@@ -18,7 +18,7 @@ namespace {
 const std::map<std::string, std::size_t> kArguments = {
     {"move", 2},   {"material", 1},   {"press", 1}, {"release", 1}, {"wheel", 1},
     {"resize", 2}, {"set", 1},        {"show", 1},  {"split", 2},   {"exposure", 1},
-    {"save", 1},   {"screenshot", 1}, {"open", 1},  {"turn", 2}};
+    {"save", 1},   {"screenshot", 1}, {"turn", 2}};
 
 const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w",    "a",
                                            "s",    "d",      "e",     "q",     "space"};

@@ -19,7 +19,7 @@ namespace pellucid::harness {
 //   split NAME AT                     NAME to the left of AT, 0..1 of the picture's width
 //   exposure FACTOR
 //   turn MODEL LIGHTS                 frames in which the model and the lights turn once; 0: still
-//   save FILE.exr, screenshot FILE.png, open FILE
+//   save FILE.exr, screenshot FILE.png
 struct ScriptLine {
   int frame = 1;
   std::string command;

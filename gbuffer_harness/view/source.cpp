@@ -134,7 +134,7 @@ public:
                                      : perspective(lens.verticalFov, aspect, scene_.camera.range);
     if (!scene_.paint) scene_.lights = lit(state.lights);
     scene_.materials = state.materials;
-    return {renderCapture(scene_, parameters_, nullptr), nullptr, {}};
+    return {renderCapture(scene_, parameters_), nullptr, {}};
   }
 
 private:

@@ -1,7 +1,6 @@
 // State that the viewer's panel and mouse change, and the work that a change makes necessary.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,7 @@ enum class Shown {
   FrontDepth,  // as the capture stores it, in false color
   Normal,      // -1..1 as 0..1
   Albedo,
-  Material,  // index, in false color
-  Tiles,     // part of a tile's pixels that have a material, in false color
-  Isolated,  // of the output's pixels, 1 those brighter than all around, 2 darker, 3 both; in false color
+  Material,    // index, in false color
 };
 
 struct Display {
@@ -78,7 +75,7 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown);
 // True where the picture is looked up in false colors.
 bool isFalseColor(Shown shown);
 
-// Names for the panel and for session files, in the order of the enumerations.
+// Names for the panel and for scripts, in the order of the enumeration.
 const std::vector<std::string>& shownNames();
 
 // A light of that type from behind and above, of which 1 arrives at `center`.
@@ -95,21 +92,5 @@ Changes turnTable(ViewState& state, const Vector3& center, double camera, double
 // Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as
 // before.
 void pullLight(Light& light, const Vector3& center, double factor);
-
-// In the order of MaterialSource.
-enum class MaterialKind { Preset, Coefficients, Burley, Gaussians, ThinWall, OpenPbr, Skin };
-
-// Those that a person may choose; profiles come from captures alone.
-inline constexpr std::array<MaterialKind, 4> kOfferedKinds = {
-    MaterialKind::Preset, MaterialKind::Coefficients, MaterialKind::OpenPbr, MaterialKind::Skin};
-
-MaterialKind kindOf(const MaterialSource& source);
-const char* materialKindName(MaterialKind kind);
-
-// The material in another description. COEFFICIENTS are exact. OPENPBR has the medium's mean free paths,
-// anisotropy and index, and its diffuse reflectance as color. PRESET and SKIN begin with their defaults,
-// "skin1" and that of the compiler. Throws InputError where the material has no coefficients, for
-// COEFFICIENTS and OPENPBR.
-MaterialSource asKind(const MaterialSource& source, MaterialKind kind);
 
 }  // namespace pellucid::harness

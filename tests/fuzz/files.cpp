@@ -49,8 +49,6 @@ std::string soundGlb() {
   const int indices = b.indices({0, 1, 2, 0, 2, 3});
   const int joints = b.accessor(std::vector<std::uint8_t>(16, 0), 5121, "VEC4", 4);
   const int weights = b.accessor(std::vector<float>(16, 0.25f), 5126, "VEC4", 4);
-  const int times = b.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
-  const int path = b.vectors({0, 0, 0, 1, 2, 3});
   const std::vector<std::uint16_t> replaced = {1};
   const int sparse = b.view(replaced.data(), 2);
   b.json["accessors"][static_cast<std::size_t>(normal)]["sparse"] = {
@@ -69,15 +67,11 @@ std::string soundGlb() {
                           {"indices", indices},
                           {"material", 0}}}}}};
   b.json["skins"] = {{{"joints", {0}}}};
-  b.json["animations"] = {
-      {{"samplers", {{{"input", times}, {"output", path}}}},
-       {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
   b.json["nodes"] = {
       {{"mesh", 0},
        {"skin", 0},
        {"scale", {1, 2, 3}},
-       {"children", {1}},
-       {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", path}}}}}}}},
+       {"children", {1}}},
       {{"camera", 0}, {"translation", {0, 0, 5}}},
       {{"rotation", {0, 0, 0, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
   b.json["scenes"][0]["nodes"] = {0, 2};

@@ -9,19 +9,13 @@ using Json = nlohmann::ordered_json;
 
 class GltfCommand : public Cli {
 protected:
-  // A triangle of material "wax" that moves along x for 2 seconds.
+  // A triangle of material "wax".
   static GltfBuilder triangle() {
     GltfBuilder b;
     const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
-    const int input = b.accessor(std::vector<float>{0, 2}, 5126, "SCALAR", 1);
-    const int output = b.vectors({0, 0, 0, 8, 0, 0});
     b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
     b.json["materials"] = {{{"name", "wax"}}};
     b.json["nodes"] = {{{"name", "body"}, {"mesh", 0}}};
-    b.json["animations"] = {
-        {{"name", "walk"},
-         {"samplers", {{{"input", input}, {"output", output}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
     return b;
   }
   std::string write(const std::string& name, GltfBuilder b) const {
@@ -41,11 +35,6 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
          "subsurface_color[2]: must be");
   expect(0, capture + " --material 'wax=skin1'", "wrote");
   expect(0, "info " + out, "skin1");
-  GltfBuilder b = triangle();
-  b.json["materials"][0]["extensions"] = {{"KHR_materials_scatter", {{"scatterStrengthFactor", 1}}}};
-  write("t.glb", b);
-  expect(3, capture,
-         "material \"wax\": KHR_materials_scatter has no effect without KHR_materials_transmission");
 }
 
 // The triangle is 2 units wide and high, and red has a transport mean free path of 1 / (.74 + .032) mm.
@@ -87,26 +76,6 @@ TEST_F(GltfCommand, FlickerFollowsPaths) {
   EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\x8c\0\0\0\xc0", 8));
   expect(2, flicker + "--path orbit,pan --picture x.png", "--picture: shows one path");
   expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");
-}
-
-TEST_F(GltfCommand, TimeChoosesAnAnimationsPose) {
-  const std::string file = write("t.glb", triangle());
-  // The auto camera follows the model, and the light's irradiance says where that is.
-  const std::string capture =
-      "capture " + file + " --size 16x16 --shadow-size 0 --material '*=skin1' --light point:0,0,10:100 -o ";
-  const auto picture = [&](const std::string& time) {
-    expect(0, capture + path("o.exr") + time, "wrote");
-    return bytes("o.exr");
-  };
-  const std::string still = picture(""), moved = picture(" --time 1");
-  EXPECT_EQ(picture(" --time 0"), still);
-  EXPECT_NE(moved, still);
-  EXPECT_EQ(picture(" --time 1 --animation walk"), moved);
-  EXPECT_EQ(picture(" --time 1 --animation 0"), moved);
-  expect(3, capture + path("x.exr") + " --time 1 --animation run",
-         "animations: none is named \"run\"; there are walk");
-  expect(2, capture + path("x.exr") + " --time -1", "--time");
-  expect(2, capture + path("x.exr") + " --animation walk", "--time");
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ TEST_F(Lobes, TheMapMultipliesWhatComesThrough) {
   expectRgb(middle(model, 1, "behind"), {0.8 * alpha, kE / 1024, 0.1 * alpha});
 }
 
-// A thin wall of KHR_materials_scatter: a third of what scatters comes back.
+// A thin wall: a third of what scatters comes back.
 TEST_F(Lobes, ScatteredLightComesBackToo) {
   Model model = leaf();
   Surface& surface = model.surfaces[0];

@@ -3,7 +3,6 @@
 
 #include "capture/read.h"
 #include "cli_fixture.h"
-#include "gltf_builder.h"
 
 namespace {
 
@@ -11,22 +10,7 @@ using namespace pellucid::test;
 
 const std::string kSmall = "--frames 2 --width 40 --height 32 --shadow-size 32 --cell 20 --validate ";
 
-class SampleCommand : public Cli {
-protected:
-  // The file has a material that does not scatter.
-  std::string triangle() const {
-    GltfBuilder gltf;
-    const int positions = gltf.vectors({0, 0, 0, 1, 0, 0, 0, 1, 0}),
-              normals = gltf.vectors({0, 0, 1, 0, 0, 1, 0, 0, 1});
-    gltf.json["meshes"] = {
-        {{"primitives",
-          {{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}, {"material", 0}}}}}};
-    gltf.json["nodes"] = {{{"mesh", 0}}};
-    gltf.json["materials"] = {{{"name", "skin"}}};
-    std::ofstream(path("triangle.glb"), std::ios::binary) << gltf.glb();
-    return path("triangle.glb");
-  }
-};
+using SampleCommand = Cli;
 
 TEST_F(SampleCommand, DrawsAndCapturesTheProceduralHead) {
   expect(0, kSmall + "--headless --turn 5 -o " + path("a.png") + " --capture " + path("a.exr"),
@@ -47,15 +31,7 @@ TEST_F(SampleCommand, DrawsAndCapturesTheProceduralHead) {
   }
 }
 
-TEST_F(SampleCommand, DrawsFiles) {
-  expect(0, triangle() + " --material skin=skin1 --headless " + kSmall, "2 frames");
-}
-
 TEST_F(SampleCommand, NamesWhatIsWrong) {
-  expect(3, path("none.glb") + " --headless", "none.glb");
-  expect(3, triangle() + " --headless " + kSmall, "materials: none scatters light; --material");
-  expect(3, triangle() + " --material skin=butter --headless", "butter");
-  expect(2, "--material skin --headless", "--material: \"skin\" is not key=value");
   expect(2, "--scale 2 --headless", "--scale");
   expect(2, "--queue copy --headless", "--queue: copy not in");
   expect(2, "--mistake typo --headless", "--mistake");

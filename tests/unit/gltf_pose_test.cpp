@@ -1,4 +1,4 @@
-// glTF: animations, skins, morph targets, and scenes far from the origin.
+// glTF: skins, morph targets, and scenes far from the origin.
 #include <cmath>
 
 #include "gltf_fixture.h"
@@ -7,83 +7,6 @@
 namespace {
 
 using namespace pellucid::test;
-
-// Adds an animation of one channel.
-void animate(GltfBuilder& b, const char* path, const std::vector<float>& times,
-             const std::vector<float>& values, int components, const char* interpolation = "LINEAR",
-             int node = 0) {
-  const char* const types[] = {"", "SCALAR", "", "VEC3", "VEC4"};
-  const int input = b.accessor(times, 5126, "SCALAR", 1);
-  const int output = b.accessor(values, 5126, types[components], static_cast<std::size_t>(components));
-  b.json["animations"].push_back(
-      {{"name", path},
-       {"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
-       {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
-}
-
-GltfOptions at(double seconds, const std::string& animation = "") {
-  GltfOptions options;
-  options.time = seconds;
-  options.animation = animation;
-  return options;
-}
-
-TEST_F(Gltf, NodesStandWhereTheAnimationHasThem) {
-  GltfBuilder b = square();
-  animate(b, "translation", {1, 3}, {0, 0, 0, 8, 0, 4}, 3);
-  const fs::path file = write("t.glb", b.glb());
-  const auto x = [&](double seconds) { return loadGltf(file, at(seconds)).model.vertices[0].position[0]; };
-  EXPECT_EQ(loadGltf(file).model.vertices[0].position[0], 0);
-  EXPECT_EQ(x(0), 0) << "the first key before it";
-  EXPECT_NEAR(x(1.5), 2, 1e-6);
-  EXPECT_EQ(x(100), 8) << "the last key after it";
-
-  b = square();
-  animate(b, "translation", {0, 1}, {1, 0, 0, 2, 0, 0}, 3, "STEP");
-  EXPECT_EQ(loadGltf(write("t.glb", b.glb()), at(0.99)).model.vertices[0].position[0], 1);
-
-  // u^3: from 0 with slope 0 to 1 with slope 3.
-  b = square();
-  animate(b, "translation", {0, 1}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 1, 0, 0, 0, 0, 0}, 3, "CUBICSPLINE");
-  EXPECT_NEAR(loadGltf(write("t.glb", b.glb()), at(0.5)).model.vertices[0].position[0], 0.125, 1e-6);
-
-  // Half of a quarter turn about z.
-  const float h = std::sqrt(0.5f);
-  b = square();
-  animate(b, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, h, h}, 4);
-  animate(b, "scale", {0, 1}, {1, 1, 1, 3, 1, 1}, 3);
-  const fs::path turned = write("t.glb", b.glb());
-  expectVector(loadGltf(turned, at(0.5)).model.vertices[1].position, 2 * h, 2 * h, 0);
-  expectVector(loadGltf(turned, at(0.5, "scale")).model.vertices[1].position, 4, 0, 0);
-  expectVector(loadGltf(turned, at(0.5, "1")).model.vertices[1].position, 4, 0, 0);
-}
-
-TEST_F(Gltf, AnimationsThatCannotBeReadAreNamed) {
-  const auto moving = [] {
-    GltfBuilder b = square();
-    animate(b, "translation", {1, 3}, {0, 0, 0, 8, 0, 4}, 3);
-    return b;
-  };
-  expectRefusals(moving, R"(
-/animations | removed | animations | has none
-/animations/0/channels/0/target/node | 9 | animations[0].channels[0].target.node | 9
-/animations/0/channels/0/sampler | 4 | animations[0].channels[0].sampler | 4
-/animations/0/samplers/0/input | removed | animations[0].samplers[0].input | is missing
-/animations/0/channels/0/target/path | "color" | channels[0].target.path | color
-/animations/0/samplers/0/interpolation | "SMOOTH" | samplers[0].interpolation | SMOOTH
-/animations/0/samplers/0/output | 3 | animations[0].channels[0].sampler
-/nodes/0/matrix | [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] | nodes[0].matrix | animations[0].channels[0]
-)",
-                 at(0));
-  expectRefused(moving().glb(), {"animations", "\"walk\"", "there are translation"}, "t.glb", at(0, "walk"));
-
-  // A pointer's channel has no part in where nodes stand.
-  GltfBuilder b = square();
-  animate(b, "translation", {1, 3}, {0, 0, 0, 8, 0, 4}, 3);
-  b.json["animations"][0]["channels"].push_back({{"sampler", 0}, {"target", {{"path", "pointer"}}}});
-  EXPECT_TRUE(
-      says(loadGltf(write("t.glb", b.glb()), at(0)).warnings, "animations[0].channels[1]: path \"pointer\""));
-}
 
 TEST_F(Gltf, MorphTargetsAddUp) {
   GltfBuilder b = square();
@@ -97,8 +20,6 @@ TEST_F(Gltf, MorphTargetsAddUp) {
   const Model m = loadGltf(write("t.glb", b.glb())).model;
   expectVector(m.vertices[0].position, 1, 0, 0.5);
   expectVector(m.vertices[0].normal, std::sqrt(0.5), 0, std::sqrt(0.5));
-  animate(b, "weights", {0, 1}, {0, 0, 1, 0}, 1);
-  expectVector(loadGltf(write("t.glb", b.glb()), at(0.5)).model.vertices[0].position, 0, 0, 1);
 }
 
 // The square hangs on two joints: its left edge on the first, its right edge on the second.
@@ -131,10 +52,6 @@ TEST_F(Gltf, SkinsBindVerticesToJoints) {
   m = loadGltf(write("t.glb", b.glb())).model;
   expectVector(m.vertices[1].position, 2, 0, 0);
   expectVector(m.vertices[3].position, 0, 2, 0);
-  animate(b, "translation", {0}, {4, 5, 0}, 3, "LINEAR", 2);
-  m = loadGltf(write("t.glb", b.glb()), at(0)).model;
-  expectVector(m.vertices[1].position, 2, 5, 0);
-  expectVector(m.vertices[0].position, 0, 0, 0);
 }
 
 TEST_F(Gltf, SkinsThatCannotBeBoundAreNamed) {

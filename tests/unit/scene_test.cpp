@@ -120,40 +120,19 @@ TEST(Scene, ThicknessIsThatOfTheClosedForm) {
     }
 }
 
-TEST(Scene, ExactThicknessMatchesTheStoredDepths) {
-  for (const std::string name :
-       {"slab", "wedge", "sphere", "hollow_sphere", "torus", "two_sheets", "plane"}) {
-    Image exact;
-    const Capture capture = makeScene(sized(name, 48), &exact);
-    const SceneModel model = buildModel(sized(name, 48));
-    ASSERT_EQ(exact.data.size(), capture.frontDepth.image.data.size()) << name;
-    for (int y = 0; y < 48; ++y) {
-      for (int x = 0; x < 48; ++x) {
-        const float front = *capture.frontDepth.image.at(x, y);
-        if (front >= kNoDepth) continue;
-        const Ray ray = model.camera.ray(x + 0.5, y + 0.5, 48, 48);
-        const double stored = (static_cast<double>(*capture.backDepth.image.at(x, y)) - front) /
-                              model.camera.viewZPerLength(ray);
-        // Two depths and one thickness rounded to float, 2^-24 of each.
-        EXPECT_NEAR(stored, *exact.at(x, y), 3 * front * std::ldexp(1, -24)) << name << " " << x << "," << y;
-      }
-    }
-  }
-}
-
 class BallField : public DistanceField {
 public:
   BallField() : DistanceField(glm::dvec3(-3), glm::dvec3(3), 1e-3) {}
-  double distance(const glm::dvec3& p) const override { return std::abs(glm::length(p) - 1.5) - 0.5; }
+  double distance(const glm::dvec3& p) const override { return glm::length(p) - 2; }
 };
 
-TEST(Scene, DistanceFieldAgreesWithAnalyticSpheres) {
-  const BallField field;  // between radii 1 and 2
-  const HollowSphere sphere(glm::dvec3(0), 2, 1);
+TEST(Scene, DistanceFieldAgreesWithAnAnalyticBall) {
+  const BallField field;
+  const Ellipsoid sphere(glm::dvec3(0), glm::dvec3(2));
   for (int i = 0; i < 60; ++i) {
     const double offset = 0.0331 * i;  // up to 1.95: the last rays graze
     const Ray ray{{offset, 0.1, 300}, glm::normalize(glm::dvec3(0, 0, -1))};
-    for (const double tMin : {0.0, 299.9}) {  // before the shell and from within its hollow or wall
+    for (const double tMin : {0.0, 299.9}) {  // before the ball, and from within it or outside
       const std::optional<Span> expected = sphere.firstSpan(ray, tMin);
       const std::optional<Span> found = field.firstSpan(ray, tMin);
       ASSERT_EQ(expected.has_value(), found.has_value()) << offset << " " << tMin;
@@ -185,17 +164,16 @@ struct Convention {
   bool orthographic, reversed, infinite;
 };
 
-void expectKnownPoints(const Convention& c, Handedness handedness) {
+void expectKnownPoints(const Convention& c) {
   const double n = 2;
   const double f = c.infinite ? kInfinity : 50;
-  const double forward = handedness == Handedness::Left ? 1 : -1;
   const double tangent = 0.5;  // half the vertical view
   const double aspect = 1.6;
   const Matrix matrix = c.orthographic
-                            ? orthographic(2 * aspect, 2, {n, f, c.reversed}, handedness)
-                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed}, handedness);
+                            ? orthographic(2 * aspect, 2, {n, f, c.reversed})
+                            : perspective(2 * std::atan(tangent), aspect, {n, f, c.reversed});
   const auto project = [&](double x, double y, double viewZ) {
-    const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, forward * viewZ, 1);
+    const glm::dvec4 clip = toGlm(matrix) * glm::dvec4(x, y, -viewZ, 1);
     EXPECT_GT(clip.w, 0);
     return glm::dvec3(clip) / clip.w;
   };
@@ -204,81 +182,41 @@ void expectKnownPoints(const Convention& c, Handedness handedness) {
     const glm::dvec3 corner = project(-top * aspect, top, z);  // upper left as seen
     EXPECT_NEAR(corner.x, -1, 1e-14);
     EXPECT_NEAR(corner.y, -1, 1e-14);  // Vulkan's y points down
-    EXPECT_NEAR(corner.z, deviceDepth(matrix, z, handedness), 1e-14);
+    EXPECT_NEAR(corner.z, deviceDepth(matrix, z), 1e-14);
   }
   EXPECT_NEAR(project(0, 0, n).z, c.reversed ? 1 : 0, 1e-14);
   const double farthest = c.infinite ? 1e12 : f;
   EXPECT_NEAR(project(0, 0, farthest).z, c.reversed ? 0 : 1, 1e-11);
-  EXPECT_EQ(clearDepth(matrix, handedness), c.reversed ? 0 : 1);
+  EXPECT_EQ(clearDepth(matrix), c.reversed ? 0 : 1);
 }
 
 TEST(Scene, CamerasMapKnownPointsInEveryConvention) {
-  for (const Handedness handedness : {Handedness::Right, Handedness::Left})
-    for (const bool reversed : {false, true})
-      for (const auto& [parallel, infinite] : {std::pair(false, false), {false, true}, {true, false}}) {
-        SCOPED_TRACE(testing::Message()
-                     << (handedness == Handedness::Left ? "left" : "right") << ", reversed " << reversed
-                     << ", orthographic " << parallel << ", infinite " << infinite);
-        expectKnownPoints({parallel, reversed, infinite}, handedness);
-      }
+  for (const bool reversed : {false, true})
+    for (const auto& [parallel, infinite] : {std::pair(false, false), {false, true}, {true, false}}) {
+      SCOPED_TRACE(testing::Message() << "reversed " << reversed << ", orthographic " << parallel << ", infinite "
+                                      << infinite);
+      expectKnownPoints({parallel, reversed, infinite});
+    }
 }
 
 // World position of a pixel through the capture's own matrices, as a replay would find it.
-glm::dvec3 worldPosition(const Capture& capture, int x, int y, double viewZ, bool left) {
+glm::dvec3 worldPosition(const Capture& capture, int x, int y, double viewZ) {
   const glm::dmat4 clipFromView = toGlm(capture.clipFromView);
-  const double z = left ? viewZ : -viewZ;
-  const double w = clipFromView[2][3] * z + clipFromView[3][3];
+  const double w = clipFromView[2][3] * -viewZ + clipFromView[3][3];
   const glm::dvec4 view(w * (2 * (x + 0.5) / capture.width - 1) / clipFromView[0][0],
-                        w * (2 * (y + 0.5) / capture.height - 1) / clipFromView[1][1], z, 1);
+                        w * (2 * (y + 0.5) / capture.height - 1) / clipFromView[1][1], -viewZ, 1);
   return glm::inverse(toGlm(capture.viewFromWorld)) * view;
 }
 
-TEST(Scene, LeftHandedCaptureIsTheMirroredWorld) {
-  SceneParameters parameters = sized("torus", 32);
-  parameters.shadowSize = 16;
-  parameters.lightType = PELLUCID_LIGHT_POINT;
-  const Capture right = makeScene(parameters);
-  parameters.handedness = Handedness::Left;
-  const Capture left = makeScene(parameters);
-  EXPECT_NEAR(glm::determinant(toGlm(left.viewFromWorld)), 1, 1e-14) << "still rigid";
-  const glm::dvec3 mirror(1, 1, -1);
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      const double viewZ = *right.frontDepth.image.at(x, y);
-      EXPECT_EQ(*left.frontDepth.image.at(x, y), *right.frontDepth.image.at(x, y));
-      if (viewZ >= kNoDepth) continue;
-      const glm::dvec3 a = worldPosition(right, x, y, viewZ, false);
-      const glm::dvec3 b = worldPosition(left, x, y, viewZ, true);
-      EXPECT_NEAR(glm::length(a * mirror - b), 0, 1e-9);
-      EXPECT_EQ(left.normal.at(x, y)[2], -right.normal.at(x, y)[2]);
-      const ShadowMap& rightMap = right.lights[0].shadowMaps[0];
-      const ShadowMap& leftMap = left.lights[0].shadowMaps[0];
-      const auto seenAlike = [&](const Matrix& fromRight, const Matrix& fromLeft) {
-        return glm::length(toGlm(fromRight) * glm::dvec4(a, 1) - toGlm(fromLeft) * glm::dvec4(b, 1)) < 1e-9;
-      };
-      EXPECT_TRUE(seenAlike(rightMap.clipFromWorld, leftMap.clipFromWorld));
-      EXPECT_TRUE(seenAlike(*rightMap.viewFromWorld, *leftMap.viewFromWorld));
-    }
-  }
-  EXPECT_EQ(toGlm(left.lights[0].position), mirror * toGlm(right.lights[0].position));
-  EXPECT_EQ(toGlm(left.lights[0].direction), mirror * toGlm(right.lights[0].direction));
-}
-
 TEST(Scene, LookAtIsRigidAndPutsTheTargetOnTheAxis) {
-  for (const Handedness handedness : {Handedness::Right, Handedness::Left}) {
-    for (const Vector3& up : {Vector3{0, 1, 0}, Vector3{1, 2, 3}}) {  // the second is parallel to the axis
-      const Matrix matrix = lookAt({1, 2, 3}, {2, 4, 6}, up, handedness);
-      const glm::dmat4 view = toGlm(matrix);
-      EXPECT_NEAR(glm::determinant(view), 1, 1e-14);
-      const glm::dvec4 eye = view * glm::dvec4(1, 2, 3, 1);
-      const glm::dvec4 target = view * glm::dvec4(2, 4, 6, 1);
-      EXPECT_NEAR(glm::length(glm::dvec3(eye)), 0, 1e-14);
-      EXPECT_NEAR(target.x, 0, 1e-14);
-      EXPECT_NEAR(target.y, 0, 1e-14);
-      EXPECT_NEAR(target.z, std::sqrt(14) * (handedness == Handedness::Left ? 1 : -1), 1e-14);
-      if (up == Vector3{0, 1, 0}) {
-        EXPECT_GT((view * glm::dvec4(0, 1, 0, 0)).y, 0);
-      }
+  for (const Vector3& up : {Vector3{0, 1, 0}, Vector3{1, 2, 3}}) {  // the second is parallel to the axis
+    const glm::dmat4 view = toGlm(lookAt({1, 2, 3}, {2, 4, 6}, up));
+    EXPECT_NEAR(glm::determinant(view), 1, 1e-14);
+    EXPECT_NEAR(glm::length(glm::dvec3(view * glm::dvec4(1, 2, 3, 1))), 0, 1e-14);
+    const glm::dvec3 target(view * glm::dvec4(2, 4, 6, 1));
+    EXPECT_NEAR(glm::length(target - glm::dvec3(0, 0, -std::sqrt(14))), 0, 1e-14);
+    if (up == Vector3{0, 1, 0}) {
+      EXPECT_GT((view * glm::dvec4(0, 1, 0, 0)).y, 0);
     }
   }
 }
@@ -325,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(
                       ShadowCase{"spheres", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DISTANCE},
                       ShadowCase{"torus", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE},
                       ShadowCase{"torus", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE},
-                      ShadowCase{"blocked", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_VIEW_Z},
+                      ShadowCase{"spheres", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_VIEW_Z},
                       ShadowCase{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z}));
 
 // Front and back surface of every pixel: shadow ray against shadow map, wherever the map can know.
@@ -418,16 +356,6 @@ TEST(Scene, LightTypesGiveTheSameIrradianceAtTheCenter) {
 
 // ---- Patterns
 
-TEST(Scene, ImpulseIsOnePixel) {
-  for (const int size : {33, 64}) {
-    const Capture capture = makeScene(sized("impulse", size));
-    double sum = 0;
-    for (const float value : capture.irradiance.data) sum += value;
-    EXPECT_EQ(sum, 3);  // three channels
-    EXPECT_EQ(*capture.irradiance.at(size / 2, size / 2), 1);
-  }
-}
-
 TEST(Scene, StepIsAveragedOverThePixel) {
   SceneParameters parameters = sized("step", 65);  // the edge halves the middle column
   parameters.options = {{"samples", 8}};
@@ -442,23 +370,12 @@ TEST(Scene, StepIsAveragedOverThePixel) {
 }
 
 TEST(Scene, TiltedPatternIsForeshortened) {
-  SceneParameters parameters = sized("sinusoid", 64);
-  parameters.options = {{"tilt", 60}, {"period", 10}, {"extent", 40}};
+  SceneParameters parameters = sized("checker", 64);
+  parameters.options = {{"tilt", 60}, {"cell", 10}, {"extent", 40}};
   const Capture capture = makeScene(parameters);
-  for (int x = 0; x < 64; ++x) {
-    const double screen = ((x + 0.5) / 64 - 0.5) * 40;
-    const double expected = 1 + std::cos(2 * std::numbers::pi * screen / std::cos(std::numbers::pi / 3) / 10);
-    EXPECT_NEAR(*capture.irradiance.at(x, 10), expected, 1e-6) << x;
-  }
-}
-
-TEST(Scene, GapIsTheStatedDepth) {
-  SceneParameters parameters = sized("gap", 32);
-  parameters.options = {{"gap", 7}};
-  const Capture capture = makeScene(parameters);
-  EXPECT_NEAR(*capture.frontDepth.image.at(20, 5) - *capture.frontDepth.image.at(10, 5), 7, 1e-4);
-  EXPECT_EQ(*capture.irradiance.at(10, 5), 1);
-  EXPECT_EQ(*capture.irradiance.at(20, 5), 0);
+  // Squares are 8 pixels wide and 16 high.
+  for (int x = 0; x < 64; ++x)
+    for (const int y : {20, 40}) EXPECT_EQ(*capture.irradiance.at(x, y), (x / 8 + y / 32) % 2 == 0 ? 1 : 0) << x;
 }
 
 TEST(Scene, BodiesHaveNumbersByBodyByMediumOrByPart) {
@@ -496,7 +413,7 @@ TEST(Scene, EverySceneIsAConsistentCapture) {
         const glm::dvec3 n(normal[0], normal[1], normal[2]);
         EXPECT_NEAR(glm::length(n), 1, 1e-6) << info.name;
         const glm::dvec3 eye = glm::inverse(toGlm(capture.viewFromWorld))[3];
-        const glm::dvec3 point = worldPosition(capture, x, y, front, false);
+        const glm::dvec3 point = worldPosition(capture, x, y, front);
         const bool perspective = capture.clipFromView[11] != 0;
         // At silhouettes rounding may turn the normal past the edge.
         if (perspective) {

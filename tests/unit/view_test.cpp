@@ -1,4 +1,4 @@
-// The viewer without a window: camera, lights, input, settings, sessions, scripts, cost.
+// The viewer without a window: camera, lights, input, settings and scripts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,6 @@
 #include "temporary_directory.h"
 #include "view/input.h"
 #include "view/script.h"
-#include "view/session.h"
 
 namespace {
 
@@ -206,59 +205,6 @@ protected:
   TemporaryDirectory folder_;
 };
 
-Session sampleSession() {
-  Session session{{"head.glb", "--unit", "cm"}, "a.settings.json", {}};
-  ViewState& state = session.state;
-  state.width = 321;
-  state.height = 123;
-  state.camera = cameraAt({0.1, 0.2, 5}, {0.3, 0, 0});
-  orbit(state.camera, 0.7, 0.1);
-  state.camera.lens.verticalFov = 0.37;
-  state.camera.lens.range = {0.11, 17};
-  state.lights = {newLight(PELLUCID_LIGHT_SPOT, state.camera, {0, 0, 0}, 1),
-                  newLight(PELLUCID_LIGHT_DIRECTIONAL, state.camera, {0, 0, 0}, 1)};
-  state.lights[1].on = false;
-  state.materials = {PresetMaterial{"skin1"}, CoefficientMaterial{{1, 2, 3}, {0.1, 0.2, 0.3}, 0.5, 1.3},
-                     OpenPbrMaterial{{0.8, 0.5, 0.3}, 2.5, {0.5, 0.25, 0.125}, 0.6, 1.3},
-                     SkinMaterial{0.1, 0.7, 0.02, 1.45}};
-  state.display = {2.5f, ToneMap::Agx, Shown::Debug, true, Shown::FrontDepth, 0.3f, 2, -1, 4};
-  return session;
-}
-
-TEST_F(ViewFiles, SessionsComeBackToTheBit) {
-  const Session session = sampleSession();
-  const std::string text = sessionJson(session);
-  const std::filesystem::path file = write("a.view.json", text);
-  EXPECT_TRUE(isSession(file));
-  const Session read = readSession(file);
-  EXPECT_EQ(sessionJson(read), text);
-  EXPECT_EQ(read.state.camera.lens.viewFromWorld, session.state.camera.lens.viewFromWorld);
-  EXPECT_FALSE(read.state.lights[1].on);
-  EXPECT_EQ(std::get<OpenPbrMaterial>(read.state.materials[2]),
-            std::get<OpenPbrMaterial>(session.state.materials[2]));
-  EXPECT_EQ(std::get<SkinMaterial>(read.state.materials[3]),
-            std::get<SkinMaterial>(session.state.materials[3]));
-  EXPECT_EQ(read.state.display.left, Shown::FrontDepth);
-}
-
-TEST_F(ViewFiles, SessionsAreRefusedByFieldAndValue) {
-  const std::string good = sessionJson(sampleSession());
-  const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    text.replace(at, from.size(), to);
-    const std::filesystem::path file = write("bad.view.json", text);
-    return pellucid::test::refusalOf([&] { readSession(file); });
-  };
-  for (const auto& [from, to, field] : {std::array{"\"agx\"", "\"velvia\"", "display.toneMap"},
-                                        {"\"near\": 0.11", "\"near\": -1", "camera.near"},
-                                        {"321", "0", "size"},
-                                        {"\"on\": true", "\"on\": 3", "lights[0].on"},
-                                        {"\"display\"", "\"displays\"", "displays"}})
-    EXPECT_NE(with(from, to).find(field), std::string::npos) << field;
-}
-
 TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
   const auto file = write("s.txt", "# a comment\n\n1 move 3 4.5\n1 press left\n7 show front-depth\n");
   const std::vector<ScriptLine> lines = readScript(file);
@@ -287,27 +233,6 @@ TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
     const std::string sentence = refused(std::string("# first\n") + text);
     EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
   }
-}
-
-// A medium described by coefficients, by OpenPBR and by coefficients again is nearly itself: OpenPBR's color
-// is that of light along the normal, and the panel takes the diffuse one.
-TEST(ViewMaterials, DescriptionsOfOneMedium) {
-  const CoefficientMaterial medium{{2, 1, 0.5}, {0.02, 0.05, 0.1}, 0, 1.4};
-  const MaterialSource openPbr = asKind(medium, MaterialKind::OpenPbr);
-  ASSERT_EQ(kindOf(openPbr), MaterialKind::OpenPbr);
-  const auto again = std::get<CoefficientMaterial>(asKind(openPbr, MaterialKind::Coefficients));
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(again.scattering[c] + again.absorption[c], medium.scattering[c] + medium.absorption[c], 1e-9);
-    EXPECT_NEAR(again.scattering[c] / medium.scattering[c], 1, 0.1);
-  }
-  const auto marble =
-      std::get<CoefficientMaterial>(asKind(PresetMaterial{"marble"}, MaterialKind::Coefficients));
-  EXPECT_EQ(marble.scattering[0], 2.19);
-  EXPECT_EQ(std::get<SkinMaterial>(asKind(medium, MaterialKind::Skin)), SkinMaterial{});
-  EXPECT_EQ(std::get<PresetMaterial>(asKind(SkinMaterial{}, MaterialKind::Preset)).preset, "skin1");
-  EXPECT_THROW(asKind(SkinMaterial{}, MaterialKind::OpenPbr), InputError);
-  EXPECT_THROW(asKind(BurleyMaterial{{1, 1, 1}, {}}, MaterialKind::Coefficients), InputError);
-  for (const MaterialKind kind : kOfferedKinds) EXPECT_EQ(kindOf(asKind(medium, kind)), kind);
 }
 
 }  // namespace

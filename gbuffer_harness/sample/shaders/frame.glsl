@@ -30,8 +30,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
 
 layout(push_constant) uniform Draw {
   mat4 clipFromWorld;
-  vec4 baseColor; // a: texels of less alpha are holes; 0: none are
-  vec4 surface;   // x: material, y: roughness, z: scale of the normal map, 0: none
+  vec4 baseColor;
+  vec4 surface; // x: material, y: roughness
 } draw;
 
 // Mistakes of integrations, shown on purpose; Mistake of renderer.h.

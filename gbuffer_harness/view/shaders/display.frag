@@ -7,7 +7,7 @@ layout(set = 0, binding = 2) uniform sampler2D albedoImage;
 layout(set = 0, binding = 3) uniform usampler2D materialImage;
 layout(set = 0, binding = 4) uniform sampler2D normalImage;
 layout(set = 0, binding = 5) uniform sampler2D depthImage;
-layout(set = 0, binding = 6) uniform sampler2D hostImage;
+layout(set = 0, binding = 6) uniform sampler2D truthImage;
 
 layout(push_constant) uniform Push {
   vec2 origin;      // of the picture on the screen, pixels
@@ -29,7 +29,7 @@ layout(location = 0) out vec4 color;
 #include "tone_map.glsl"
 
 const int kAfter = 0, kBefore = 1, kThrough = 2, kDifference = 3, kTruth = 4, kDebug = 5, kFrontDepth = 6,
-          kNormal = 7, kAlbedo = 8, kMaterial = 9, kTiles = 10, kIsolated = 11;
+          kNormal = 7, kAlbedo = 8, kMaterial = 9;
 
 vec4 fetch(sampler2D image, ivec2 p) { return texelFetch(image, min(p, textureSize(image, 0) - 1), 0); }
 uint materialAt(ivec2 p) { return texelFetch(materialImage, min(p, textureSize(materialImage, 0) - 1), 0).r; }
@@ -41,15 +41,13 @@ vec3 valueAt(ivec2 p) {
   switch (push.shown) {
     case kBefore: return before(p);
     case kThrough: return materialAt(p) != 0u ? max(fetch(resultImage, p).rgb - before(p), 0.0) : vec3(0.0);
-    case kDifference: return abs(after(p) - (push.hasTruth != 0 ? fetch(hostImage, p).rgb : before(p)));
-    case kTruth: return fetch(hostImage, p).rgb;
+    case kDifference: return abs(after(p) - (push.hasTruth != 0 ? fetch(truthImage, p).rgb : before(p)));
+    case kTruth: return fetch(truthImage, p).rgb;
     case kDebug: return fetch(resultImage, p).rgb;
     case kFrontDepth: return fetch(depthImage, p).rrr;
     case kNormal: return 0.5 * fetch(normalImage, p).rgb + 0.5;
     case kAlbedo: return fetch(albedoImage, p).rgb;
     case kMaterial: return vec3(materialAt(p));
-    case kTiles:
-    case kIsolated: return fetch(hostImage, p).rrr;
     default: return after(p);
   }
 }
