@@ -9,8 +9,7 @@ using namespace pellucid::test;
 using Json = nlohmann::json;
 
 TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
-  // A checkered plane, and as its truth what the module makes of it, which samples of no light do not change;
-  // then the plane's irradiance. Seen as the procedural scene has it, but for its camera: any orthographic
+  // A checkered plane, and as its truth what the module makes of it, which samples of no light do not change. Seen as the procedural scene has it, but for its camera: any orthographic
   // one will do, as the truth is made with the same.
   expect(0, "capture --procedural checker --size 40x40 -o " + path("c.exr"), "");
   const Json plane = Json::parse(R"({"pellucid": 1, "metersPerUnit": 0.001,
@@ -20,25 +19,20 @@ TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
                 "normal": {"constant": [0, 0, 1], "space": "world"},
                 "irradiance": {"file": "c.exr", "channels": ["irradiance.R", "irradiance.G", "irradiance.B"]}},
     "lights": [], "materials": [{"preset": "skin1"}]})");
-  for (const bool same : {true, false}) {
-    const std::string truth = same ? "truth.exr" : "irradiance.exr";
-    Json manifest = plane;
-    std::ofstream(path("m.json")) << manifest.dump();
-    expect(0, "replay " + path("m.json") + " -o " + path(truth) + (same ? "" : " --set features=none"),
-           "wrote");
-    manifest["truth"] = {{"file", truth}, {"channels", {"R", "G", "B"}}};
-    std::ofstream(path("m.json")) << manifest.dump();
-
-    expect(0, "evaluate " + path("m.json") + " --rows samples --json -o " + path("r.json"), "");
-    const Json report = Json::parse(bytes("r.json"));
-    ASSERT_EQ(report["results"].size(), 3u);
-    for (const Json& result : report["results"]) {
-      EXPECT_EQ(result["tint"]["blocks"], 25);
-      EXPECT_TRUE(!same || result["isolated"] == result["isolatedInTruth"]) << result;
-      EXPECT_EQ(result["all"]["rel_rmse"][0] == 0, same) << result;
-      EXPECT_EQ(result["tint"]["channels"][0] == 0, same) << result;
-      EXPECT_EQ(result["flip"]["mean"] == 0, same) << result;
-    }
+  Json manifest = plane;
+  std::ofstream(path("m.json")) << manifest.dump();
+  expect(0, "replay " + path("m.json") + " --repeat 0 -o " + path("truth.exr"), "wrote");
+  manifest["truth"] = {{"file", "truth.exr"}, {"channels", {"R", "G", "B"}}};
+  std::ofstream(path("m.json")) << manifest.dump();
+  expect(0, "evaluate " + path("m.json") + " --rows samples --json -o " + path("r.json"));
+  const Json report = Json::parse(bytes("r.json"));
+  ASSERT_EQ(report["results"].size(), 3u);
+  for (const Json& result : report["results"]) {
+    EXPECT_EQ(result["tint"]["blocks"], 25);
+    EXPECT_EQ(result["isolated"], result["isolatedInTruth"]) << result;
+    EXPECT_EQ(result["all"]["rel_rmse"][0], 0) << result;
+    EXPECT_EQ(result["tint"]["channels"][0], 0) << result;
+    EXPECT_EQ(result["flip"]["mean"], 0) << result;
   }
 }
 
@@ -72,15 +66,9 @@ TEST_F(Cli, FlickerUsage) {
   expect(2, "flicker x.exr --size 16x16", "--size: needs a model or --procedural");
   expect(2, plane + "--pixels 1,0", "\"0\" is not a number of pixels");
   expect(2, plane + "--pixels 1,x", "\"x\" is not a number");
-  expect(2, plane + "--debug thickness", "--debug");
   expect(2, plane + "--limit max=1", "must be one of rel_rmse=, p999=, worst=, spots=");
-  expect(2, plane + "--set period=3", "unknown key \"period\"");
-  expect(3, plane + "--scene-set period=3", "period");
-  expect(3, plane + "--pixels 8", "a rim of 8 pixels");
   expect(2, plane + "--path pan", "--path: needs a model");
-  expect(2, plane + "--frames 5", "--frames");
   expect(3, "flicker " + path("missing.exr"), "missing.exr");
-  expect(2, "evaluate " + path("missing.exr") + " --rows all", "--rows");
 }
 
 }  // namespace

@@ -27,11 +27,9 @@ TEST_F(InitCommand, WritesAManifestThatReplays) {
         "missing most: camera: unknown: where the camera is"})
     EXPECT_NE(made.text.find(line), std::string::npos) << line << "\n" << made.text;
   EXPECT_NE(made.text.find("next: pellucid replay " + manifest), std::string::npos) << made.text;
-  expect(0, "replay " + manifest + " --repeat 0 --png -o " + path("o.exr"), "wrote");
-  EXPECT_GT(std::filesystem::file_size(path("o.png")), 100u);
   // With its layers the result is a G-buffer again.
-  expect(0, "replay " + manifest + " --repeat 0 --keep-layers -o " + path("k.exr"), "wrote");
-  expect(0, "compare " + path("o.exr") + " " + path("k.exr") + " --limit max=0", "rel_rmse");
+  expect(0, "replay " + manifest + " --repeat 0 --png --keep-layers -o " + path("k.exr"), "wrote");
+  EXPECT_GT(std::filesystem::file_size(path("k.png")), 100u);
   expect(0, "init " + path("k.exr") + " --fov 20 --irradiance irradiance -o " + path("k.json"),
          "k.exr front.Z");
   const auto json = nlohmann::json::parse(bytes("c.json"));
