@@ -31,8 +31,7 @@ TEST_F(Accuracy, ThicknessFromDeviceDepthKeepsWhatTheDepthsHold) {
   for (const DepthFormat& format :
        {DepthFormat{"D16", 16, false}, DepthFormat{"D24", 24, false}, DepthFormat{"D32 float", 0, false},
         DepthFormat{"D32 float, reversed", 0, true}})
-    for (const auto& [n, f] :
-         {std::pair{0.1, 10.0}, {0.01, double(INFINITY)}}) {
+    for (const auto& [n, f] : {std::pair{0.1, 10.0}, {0.01, double(INFINITY)}}) {
       SCOPED_TRACE(testing::Message() << format.name << ", " << n << " .. " << f);
       // Device depth = a + b / planar distance, as float matrices hold them.
       double a = std::isinf(f) ? 1 : f / (f - n), b = std::isinf(f) ? -n : -f * n / (f - n);

@@ -11,7 +11,9 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   expect(0, "capture --procedural slab --size 48x32 --shadow-size 64 -o " + capture);
   expect(0, "info " + capture, "shadow");
   expect(0, "plan " + capture, "\"dispatchCount\": 9");
-  expect(0, "replay " + capture + " -o " + out + " --triptych " + path("t.png") + " --png --exposure 1 --tonemap agx",
+  expect(0,
+         "replay " + capture + " -o " + out + " --triptych " + path("t.png") +
+             " --png --exposure 1 --tonemap agx",
          "median of 3 frames after a first one");
   for (const char* file : {"out.exr", "out.png", "t.png"}) EXPECT_GT(fs::file_size(path(file)), 100u) << file;
   const std::string mapped = "replay " + capture + " -o " + again + " --exposure 1 ";
@@ -23,7 +25,8 @@ TEST_F(Cli, CaptureReplayComparePlan) {
   EXPECT_NE(once.text.find("skipped: 1 x translucency"), std::string::npos) << once.text;
   EXPECT_EQ(once.text.find("time"), std::string::npos) << once.text;
   expect(1, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.001", "limit");
-  expect(0, "replay " + capture + " --mode thesis --debug thickness --repeat 1 --views 2 -o " + path("d.exr"), "2 views: ");
+  expect(0, "replay " + capture + " --mode thesis --debug thickness --repeat 1 --views 2 -o " + path("d.exr"),
+         "2 views: ");
   EXPECT_TRUE(fs::exists(path("d.png")));
   expect(0, "reference " + capture + " -o " + again, "wrote");
   expect(0, "compare " + out + " " + again + " --mask " + capture + " --limit rel_rmse=0.05", "rel_rmse");
@@ -32,7 +35,8 @@ TEST_F(Cli, CaptureReplayComparePlan) {
 // A table of 3 x 3 blocks, and a picture; the EXR holds the result.
 TEST_F(Cli, Statistics) {
   const std::string capture = path("ball.exr"), out = path("out.exr");
-  expect(0, "capture --procedural sphere --set extent=9 --set radius=1 --size 192x192 --shadow-size 32 -o " + capture);
+  expect(0, "capture --procedural sphere --set extent=9 --set radius=1 --size 192x192 --shadow-size 32 -o " +
+                capture);
   const Outcome outcome = run("replay " + capture + " --repeat 0 --stats --debug blocks -o " + out);
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   int blocks = 0, most = 0;
@@ -45,9 +49,13 @@ TEST_F(Cli, Statistics) {
 }
 
 TEST_F(Cli, Sheets) {
-  const std::string views = path("ear.02.exr@albedo") + " " + path("ear.12.exr@albedo"), out = " -o " + path("sheet.png");
-  expect(0, "capture --procedural ear --size 24x16 --shadow-size 32 --turntable 12 --orbit --frames 2,12 -o " + path("ear.##.exr"));
-  expect(0, "sheet " + views + " " + path("ear.02.exr@irradiance") + " --columns 2 --tonemap agx" + out, "3 images");
+  const std::string views = path("ear.02.exr@albedo") + " " + path("ear.12.exr@albedo"),
+                    out = " -o " + path("sheet.png");
+  expect(0,
+         "capture --procedural ear --size 24x16 --shadow-size 32 --turntable 12 --orbit --frames 2,12 -o " +
+             path("ear.##.exr"));
+  expect(0, "sheet " + views + " " + path("ear.02.exr@irradiance") + " --columns 2 --tonemap agx" + out,
+         "3 images");
   EXPECT_GT(fs::file_size(path("sheet.png")), 100u);
   expect(0, "sheet " + views + " --label one --label two --exposure 1,0.5" + out, "2 images");
   expect(3, "sheet " + path("ear.02.exr@velvia") + out, "velvia");
@@ -87,7 +95,8 @@ TEST_F(Cli, BadInput) {
 
 TEST_F(Cli, TurntableAndSequence) {
   const std::string in = path("in.###.exr"), out = path("out.#.exr"), replay = "replay " + in + " -o " + out;
-  const std::string turn = "capture --procedural ear --size 24x24 --shadow-size 16 --turntable 4 --light-turntable 6 -o " + in;
+  const std::string turn =
+      "capture --procedural ear --size 24x24 --shadow-size 16 --turntable 4 --light-turntable 6 -o " + in;
   expect(0, turn);
   for (const char* file : {"in.001.exr", "in.002.exr", "in.003.exr", "in.004.exr"})
     EXPECT_TRUE(fs::exists(path(file))) << file;

@@ -63,7 +63,8 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   s.features = PELLUCID_FEATURE_DIFFUSION;
   EXPECT_TRUE(sameBits(record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, s)),
                        replay(litSlab(), testMaterial(), s)));
-  const std::string said = refusalOf([&] { record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, {})); });
+  const std::string said =
+      refusalOf([&] { record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, {})); });
   EXPECT_NE((said + diffusion.message()).find("plan needs pipeline translucency"), std::string::npos) << said;
   const auto unknown = [](PellucidContextDesc& desc) { desc.options.uses = 1u << 20; };
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);

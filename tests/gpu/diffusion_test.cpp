@@ -276,8 +276,7 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
     std::initializer_list<double> deviations;
     uint32_t dropped;  // levels
   };
-  for (const Row& row :
-       {Row{{0.7, 1.5, 3, 5.5}, 4}, {{7}, 2}, {{1, 21.5}, 2}}) {
+  for (const Row& row : {Row{{0.7, 1.5, 3, 5.5}, 4}, {{7}, 2}, {{1, 21.5}, 2}}) {
     const PellucidMaterial m = gaussians(row.deviations, 0.5);
     ReplaySettings s = diffusionOnly();
     const ReplayResult all = replayer().run(c, {m}, s);

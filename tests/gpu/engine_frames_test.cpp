@@ -27,7 +27,6 @@ const Capture& head() {
 
 ReplaySettings wide() { return gathering(8); }
 
-
 // ---- Normals
 
 // Independent of compute/: Cigolle et al. 2014, listing 1.
@@ -109,8 +108,7 @@ TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
   }
   // The test sees a context that decodes something else.
   chord.normalFormat = VK_FORMAT_R16G16_SNORM;
-  const Image wrong =
-      replay(withNormals(head(), PELLUCID_NORMALS_OCTAHEDRAL), chord);
+  const Image wrong = replay(withNormals(head(), PELLUCID_NORMALS_OCTAHEDRAL), chord);
   EXPECT_GT(relativeRmse(wrong, through, head().material), 0.02);
 }
 
@@ -156,8 +154,7 @@ TEST_F(EngineFrames, ResultIsAddedToWhatTheOutputHolds) {
   const Capture& c = head();
   const Image held = specular(c);
   const std::function<void(ReplaySettings&)> changes[] = {
-      [](ReplaySettings&) {},
-      [](ReplaySettings& s) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; },
+      [](ReplaySettings&) {}, [](ReplaySettings& s) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; },
       [](ReplaySettings& s) { s.features = PELLUCID_FEATURE_DIFFUSION; },
       [](ReplaySettings& s) { s.features = 0; },
       [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ALTERNATE, s.translucency.gatherSamples = 0; }};
@@ -262,8 +259,7 @@ TEST_F(EngineFrames, PackedIrradianceGivesThePictureOfItsColors) {
       s.irradianceFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
       const Image expected = replay(rounded, s);
       s.irradianceFormat = p.format;
-      EXPECT_TRUE(sameBits(replay(head(), s), expected))
-          << p.format << ", samples " << samples;
+      EXPECT_TRUE(sameBits(replay(head(), s), expected)) << p.format << ", samples " << samples;
     }
   }
 }

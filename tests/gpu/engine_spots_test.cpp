@@ -58,9 +58,7 @@ protected:
   static std::pair<std::size_t, std::size_t> spots(const Capture& c, const Capture& plain) {
     const Surfaces surfaces(c);
     const auto seen = [&](const Image& image) { return SpotImage(image, surfaces, c.material); };
-    const auto run = [&](const Capture& of) {
-      return seen(rgb(replay(of, gathering(8))));
-    };
+    const auto run = [&](const Capture& of) { return seen(rgb(replay(of, gathering(8)))); };
     const SpotImage result = run(c), expected = run(plain), input = seen(litAlbedo(c));
     const std::vector<Spot> all = result.find(&input);
     return {all.size(), result.lackedBy(expected, all).size()};

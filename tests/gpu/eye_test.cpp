@@ -9,8 +9,9 @@ using namespace pellucid::test;
 using Json = nlohmann::json;
 
 TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
-  // A checkered plane, and as its truth what the module makes of it, which samples of no light do not change. Seen as the procedural scene has it, but for its camera: any orthographic
-  // one will do, as the truth is made with the same.
+  // A checkered plane, and as its truth what the module makes of it, which samples of no light do not change.
+  // Seen as the procedural scene has it, but for its camera: any orthographic one will do, as the truth is
+  // made with the same.
   expect(0, "capture --procedural checker --size 40x40 -o " + path("c.exr"), "");
   const Json plane = Json::parse(R"({"pellucid": 1, "metersPerUnit": 0.001,
     "camera": {"clipFromView": [0.1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, -0.001, 0, 0, 0, 0, 1],

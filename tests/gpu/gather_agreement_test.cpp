@@ -308,8 +308,8 @@ TEST_F(GatherAgreement, TwoLightsAddUp) {
   ASSERT_EQ(both.lights.size(), 2u);
   const Capture key = only(both, 0, {{"rimLight", 0}}), rim = only(both, 1, {{"keyLight", 0}});
   for (const uint32_t spacing : {1u, 4u}) {
-    const Difference d =
-        difference(both, gathered(both, 8, spacing), sum(gathered(key, 8, spacing), gathered(rim, 8, spacing)));
+    const Difference d = difference(both, gathered(both, 8, spacing),
+                                    sum(gathered(key, 8, spacing), gathered(rim, 8, spacing)));
     EXPECT_LT(d.rmse, kSumRmse);
     EXPECT_LT(d.worst, kSumWorst);
   }

@@ -82,7 +82,8 @@ TEST_F(Gather, IsTheSlabsTransmittance) {
     uint32_t samples, spacing;
     PellucidDepthEncoding encoding;
   };
-  for (const Row& row : {Row{4, 1, PELLUCID_DEPTH_VIEW_Z}, Row{16, 4, PELLUCID_DEPTH_DISTANCE}, Row{64, 2, PELLUCID_DEPTH_DEVICE}})
+  for (const Row& row : {Row{4, 1, PELLUCID_DEPTH_VIEW_Z}, Row{16, 4, PELLUCID_DEPTH_DISTANCE},
+                         Row{64, 2, PELLUCID_DEPTH_DEVICE}})
     for (const double d : {0.5, 4.0}) {
       Capture c = backlitSlab(d, row.encoding);
       for (float& v : c.irradiance.data) v = 0;  // of which a thin slab returns less

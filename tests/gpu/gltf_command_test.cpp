@@ -72,7 +72,8 @@ TEST_F(GltfCommand, FlickerFollowsPaths) {
     EXPECT_LT(change["rel_rmse"][0], 0.02) << change;
   }
   EXPECT_EQ(paths, 2);
-  // Two frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's header.
+  // Two frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's
+  // header.
   EXPECT_EQ(bytes("f.png").substr(16, 8), std::string("\0\0\0\xc4\0\0\0\xc0", 8));
   expect(2, flicker + "--path orbit,pan --picture x.png", "--picture: shows one path");
   expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");

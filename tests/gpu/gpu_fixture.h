@@ -75,7 +75,8 @@ inline ReplaySettings inFloats(uint32_t features = ReplaySettings{}.features) {
   return settings;
 }
 
-inline ReplaySettings gathering(uint32_t samples, uint32_t spacing = ReplaySettings{}.translucency.gatherSpacing) {
+inline ReplaySettings gathering(uint32_t samples,
+                                uint32_t spacing = ReplaySettings{}.translucency.gatherSpacing) {
   ReplaySettings settings = inFloats();
   settings.translucency.gatherSamples = samples;
   settings.translucency.gatherSpacing = spacing;

@@ -97,7 +97,8 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
     record(run);
     const PellucidStatistics statistics = run.statistics();
     std::map<std::string, PellucidGroups> found;
-    for (uint32_t i = statistics.dispatchCount; i-- > 0;) found[run.plan().dispatches[i].name] = statistics.dispatches[i];
+    for (uint32_t i = statistics.dispatchCount; i-- > 0;)
+      found[run.plan().dispatches[i].name] = statistics.dispatches[i];
     return found;
   };
   constexpr const char* kListed[] = {"downsample",   "upsample", "diffuse",

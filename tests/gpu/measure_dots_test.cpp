@@ -58,7 +58,8 @@ TEST_F(MeasureDots, SphereIsAlikeAllAround) {
   const auto phase = [&] { return (std::sin(b) + (std::numbers::pi - b) * std::cos(b)) / std::numbers::pi; };
   while (phase() > threshold) b += 1e-5;
   const std::string sphere =
-      "--procedural sphere --scene-set radius=.001 --scene-set extent=.003 --size 32 --shadow-size 48 --steps 12 "
+      "--procedural sphere --scene-set radius=.001 --scene-set extent=.003 --size 32 --shadow-size 48 "
+      "--steps 12 "
       "--threshold .5 ";
   std::vector<double> dots = measure(sphere + "--entries 2");
   const std::vector<double> map = measure(sphere + "--sphere 3 --face 0,1,1 --up 1,0,0");

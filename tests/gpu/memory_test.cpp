@@ -149,7 +149,8 @@ TEST_F(Memory, WorkThatDoesNotFitIsRefused) {
 // what they are. Where nothing can be written a sentence says so.
 TEST_F(Memory, DevicesAreNotReplaced) {
   writeCapture("small", 8, 8);
-  const std::string image = path("small.exr"), small = "capture --procedural sphere --size 8x8 --shadow-size 8 -o ";
+  const std::string image = path("small.exr"),
+                    small = "capture --procedural sphere --size 8x8 --shadow-size 8 -o ";
   for (const auto& [command, name] : {std::pair(small, "full.exr"),
                                       {"replay " + path("small.json") + " --repeat 0 -o ", "full.exr"},
                                       {"compare " + image + " " + image + " --diff ", "full.png"}}) {

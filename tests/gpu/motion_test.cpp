@@ -51,7 +51,8 @@ TEST_F(Motion, AnchoredNoiseMovesWithTheBody) {
       const auto rmse = compareShifted(before, now, maskOf(still), k, k / 2).relativeRmse;
       return *std::max_element(rmse.begin(), rmse.end());
     };
-    EXPECT_GT(change(anchored, rgbOf(still, anchored), 3), 0.004) << "there is no noise to keep, spacing " << spacing;
+    EXPECT_GT(change(anchored, rgbOf(still, anchored), 3), 0.004)
+        << "there is no noise to keep, spacing " << spacing;
     anchored.anchor = kAnchor;
     const Image before = rgbOf(still, anchored);
     for (const int k : {1, 2, 3, -5})

@@ -131,9 +131,8 @@ TEST_F(Sample, FramesInFlightKeepTheirConstants) {
 TEST_F(Sample, AQueueOfItsOwnGivesTheSamePicture) {
   const Image color = drawn(still()), picture = renderer().picture().download();
   Settings settings;
-  for (const auto& [own, pellucid, scale] : {std::tuple(true, true, 1.0),
-                                             {false, true, 0.7},
-                                             {true, false, 1.0}}) {
+  for (const auto& [own, pellucid, scale] :
+       {std::tuple(true, true, 1.0), {false, true, 0.7}, {true, false, 1.0}}) {
     settings.ownQueue = own;
     settings.pellucid = pellucid;
     settings.scale = scale;

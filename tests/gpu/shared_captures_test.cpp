@@ -24,8 +24,8 @@ using namespace pellucid::test;
 // Relative RMSE in R, G and B: of 4x4 averages from path-traced truth, but for allTexels and diffusion.
 struct Expectation {
   const char* name;
-  double thickness[3];       // one thickness a pixel
-  double gather[3], unlit[3];  // 16 samples, and these over pixels without light from the front
+  double thickness[3];                    // one thickness a pixel
+  double gather[3], unlit[3];             // 16 samples, and these over pixels without light from the front
   double allTexels[3] = {.03, .03, .03};  // 16 samples from the sum over all texels
   double diffusion[3] = {0, 0, 0};        // the diffusion alone from brute force; 0: not compared
   // One thickness a pixel over no translucency. On a sphere thickness along the light ray falls to 0 at the
@@ -57,11 +57,14 @@ protected:
     return rgb(replayer().run(capture, materials, s).output);
   }
   // 2 %: only the device's rounding may differ.
-  static void expectBelow(const Comparison& found, const double (&limits)[3], const char* what, double margin = 1.02) {
-    for (size_t c = 0; c < 3; ++c) EXPECT_LT(found.channels[c].relativeRmse, limits[c] * margin) << what << " " << c;
+  static void expectBelow(const Comparison& found, const double (&limits)[3], const char* what,
+                          double margin = 1.02) {
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_LT(found.channels[c].relativeRmse, limits[c] * margin) << what << " " << c;
   }
   Comparison fromTruth(const Image& image, Subset subset = Subset::All) const {
-    return compareImages(image, capture.truth->image, comparisonMask(capture.material, capture.irradiance, subset), 4);
+    return compareImages(image, capture.truth->image,
+                         comparisonMask(capture.material, capture.irradiance, subset), 4);
   }
   void compareWithBruteForce(const Image& diffused) const {
     namespace reference = pellucid::harness::reference;
@@ -116,23 +119,41 @@ TEST_P(SharedCapture, IsNearAllTexels) {
   for (int y = 0; y < capture.height; ++y)
     for (int x = 0; x < capture.width; ++x)
       if (!wanted(x, y)) some[static_cast<size_t>(y * capture.width + x)] = 0;
-  expectBelow(compareImages(image, all, comparisonMask(some, capture.irradiance, Subset::All), 4), GetParam().allTexels,
-              "all texels", 1);
+  expectBelow(compareImages(image, all, comparisonMask(some, capture.irradiance, Subset::All), 4),
+              GetParam().allTexels, "all texels", 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Truth, SharedCapture,
     testing::Values(
-        Expectation{"ear_backlit", {.1770, .1105, .0551}, {.0600, .0354, .0316}, {.188, .112, .1705},
-                    {.03, .03, .03}, {.021, .018, .017}},
-        Expectation{"head_sidelit", {.0500, .0485, .0412}, {.0310, .0232, .0222}, {.2525, .312, .484},
-                    {.03, .03, .03}, {.017, .009, .0053}},
+        Expectation{"ear_backlit",
+                    {.1770, .1105, .0551},
+                    {.0600, .0354, .0316},
+                    {.188, .112, .1705},
+                    {.03, .03, .03},
+                    {.021, .018, .017}},
+        Expectation{"head_sidelit",
+                    {.0500, .0485, .0412},
+                    {.0310, .0232, .0222},
+                    {.2525, .312, .484},
+                    {.03, .03, .03},
+                    {.017, .009, .0053}},
         // Next to no blue comes through but at the rims, where light enters by the side faces, too.
-        Expectation{"slab_backlit", {.190, .259, .413}, {.0439, .0809, .311}, {.0439, .0809, .311}, {.03, .03, .11}},
-        Expectation{"sphere_backlit", {.363, .220, .1340}, {.0619, .0458, .0536}, {.1185, .1255, .1275},
-                    {.03, .03, .03}, {.0618, .0300, .0258}, {1, 1.18, 1.34}},
+        Expectation{
+            "slab_backlit", {.190, .259, .413}, {.0439, .0809, .311}, {.0439, .0809, .311}, {.03, .03, .11}},
+        Expectation{"sphere_backlit",
+                    {.363, .220, .1340},
+                    {.0619, .0458, .0536},
+                    {.1185, .1255, .1275},
+                    {.03, .03, .03},
+                    {.0618, .0300, .0258},
+                    {1, 1.18, 1.34}},
         // A record is a mean of texels, and the front sheet ends within some.
-        Expectation{"two_sheets", {.1484, .159, .214}, {.0361, .0306, .0646}, {.0361, .0306, .0646}, {.031, .031, .031}}),
+        Expectation{"two_sheets",
+                    {.1484, .159, .214},
+                    {.0361, .0306, .0646},
+                    {.0361, .0306, .0646},
+                    {.031, .031, .031}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 // The same head through Blender's Cycles: same mesh, camera and light, another renderer.

@@ -95,9 +95,9 @@ TEST_F(ThinWall, LightFromBehindIsTransmittanceTimesTheIrradianceOfTheOtherFace)
       model.lights = {directional(direction, kE)};
       const Capture c = draw(model, shadowSize);
       for (const std::uint32_t samples : {0u, 8u}) {
-        SCOPED_TRACE(testing::Message() << samples << " samples"
-                                        << ", map " << shadowSize << ", light " << direction[0] << " "
-                                        << direction[1]);
+        SCOPED_TRACE(testing::Message()
+                     << samples << " samples"
+                     << ", map " << shadowSize << ", light " << direction[0] << " " << direction[1]);
         // The sphere shadows the edge of the sheet.
         expectPixels(c, replay(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
           return y > 2 && shadowSize > 0 ? -1 : kTransmittance[k] * kE * cosineOf(direction);

@@ -104,13 +104,15 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
       {"physical", physical}, {"thesis", thesisSettings()}, {"cosine", cosine}};
   for (const auto& [name, settings] : kSettings) {
     SCOPED_TRACE(name);
-    const bool orthographic = settings.translucency.constantViewDirection, reversed = &settings != &kSettings[1].second;
-    const RasterOptions options{.width = 96,
-                                .height = 80,
-                                .reversedZ = reversed,
-                                .normalsInViewSpace = reversed,
-                                .shadowSize = 256,
-                                .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
+    const bool orthographic = settings.translucency.constantViewDirection,
+               reversed = &settings != &kSettings[1].second;
+    const RasterOptions options{
+        .width = 96,
+        .height = 80,
+        .reversedZ = reversed,
+        .normalsInViewSpace = reversed,
+        .shadowSize = 256,
+        .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
     const Difference d = difference(orthographic, options, settings);
     EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
     EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";

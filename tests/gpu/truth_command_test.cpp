@@ -67,7 +67,8 @@ TEST_F(Cli, LightsWithoutAShadowMapErrAsInfoSays) {
     EXPECT_EQ(outcome.code, 0) << outcome.text;
     return nlohmann::json::parse(outcome.text)["bias"].get<std::vector<double>>();
   };
-  const std::vector<double> ear = bias("ear --size 32x32"), ball = bias("sphere --size 16x16 --set extent=18");
+  const std::vector<double> ear = bias("ear --size 32x32"),
+                            ball = bias("sphere --size 16x16 --set extent=18");
   const double printed[] = {0.04, 0.12, 0.21};
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(ear[c], printed[c], 0.03) << c;

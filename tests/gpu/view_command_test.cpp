@@ -11,7 +11,8 @@ namespace {
 
 using namespace pellucid::test;
 
-const std::string kScene = "view --procedural sphere --size 64x48 --shadow-size 64 --validate --window-size 640x400 ";
+const std::string kScene =
+    "view --procedural sphere --size 64x48 --shadow-size 64 --validate --window-size 640x400 ";
 
 class View : public Cli {
 protected:
@@ -40,7 +41,8 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.png").substr(0, 4), "\x89PNG");
   // Opened later, in place of another scene; what cannot be opened changes nothing.
   expect(0,
-         "view --procedural slab --size 20x20 --shadow-size 16 --no-window --validate --window-size 320x200 --frames 4 " +
+         "view --procedural slab --size 20x20 --shadow-size 16 --no-window --validate --window-size 320x200 "
+         "--frames 4 " +
              script("1 open " + path("none.exr") + "\n2 open " + path("a.view.json") + "\n3 open " +
                     path("script.txt") + "\n") +
              "--save " + path("d.exr"),
@@ -65,10 +67,12 @@ TEST_F(View, ASavedViewOfAModelOpensWithItsLightsAndMaterials) {
   writeTriangle(path("t.glb"));
   expect(0,
          "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +
-             " --size 32x32 --shadow-size 32 --validate --no-window --window-size 320x200 --frames 6 " + script("1 turn 40 16\n") +
-             "--save " + path("a.exr"),
+             " --size 32x32 --shadow-size 32 --validate --no-window --window-size 320x200 --frames 6 " +
+             script("1 turn 40 16\n") + "--save " + path("a.exr"),
          "3 moving frames, ms");
-  expect(0, "view " + path("a.view.json") + " --validate --no-window --window-size 320x200 --frames 1 --save " + path("b.exr"),
+  expect(0,
+         "view " + path("a.view.json") + " --validate --no-window --window-size 320x200 --frames 1 --save " +
+             path("b.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.exr"), bytes("b.exr"));
 }
@@ -91,8 +95,9 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
                " -o " + path(std::string(light) + ".exr"),
            "");
   std::ofstream(path("scenes.txt")) << "# two\ndirectional.exr\nspot.exr\n";
-  const std::string test = "view --validate --no-window --window-size 320x200 --perception " + path("scenes.txt") + " --answers " +
-                           path("answers.csv") + " --frames 10 --participant ";
+  const std::string test = "view --validate --no-window --window-size 320x200 --perception " +
+                           path("scenes.txt") + " --answers " + path("answers.csv") +
+                           " --frames 10 --participant ";
   const std::string accept = "2 press space\n4 release space\n", again = "6 press space\n7 release space\n";
   expect(0, test + "one " + script("1 set filter=.5,.3,.2\n" + accept + again), "frames of the screen");
   expect(3, "perception " + path("answers.csv"), "there are 1 and 2");
