@@ -87,12 +87,6 @@ const EngineFrame kFrames[] = {
        biased(o, 16, 80, 0);  // 2.5 texels of a map of 2048 around the model
        o.shadow.normalOffset = 2.5;
      }},
-    {"Cascades",
-     [](RasterOptions& o) {
-       biased(o, 16, 4, 3);
-       o.shadow.cascades = 4;
-       o.shadow.placement = MapPlacement::Array;
-     }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Habits, EngineSpots, testing::ValuesIn(kFrames),
