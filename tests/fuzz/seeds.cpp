@@ -56,20 +56,15 @@ public:
   // Every value, object and array of the document replaced by each of these, and left out, and renamed.
   void setValues(const json& sound) {
     const json values[] = {nullptr,
-                           true,
                            -1,
-                           0,
                            1e308,
-                           1e-320,
                            4294967296.0,
                            "",
                            "viewZ",
-                           "../..",
                            "/dev/zero",
                            std::string(1000, 'x'),
                            json::array(),
                            json::object(),
-                           json::array({json::array()}),
                            std::vector<double>(1000, 1.0)};
     const json flat = sound.flatten();
     std::vector<json::json_pointer> pointers;
@@ -118,10 +113,10 @@ void exrSeeds(Damage& damage, const Use& use) {
   // The header, with the embedded manifest, is the part of a file that says how much to allocate.
   constexpr std::size_t kHeaderBytes = 4000;
   for (const std::string& sound : {capture, tiles}) {
-    damage.cut(sound, 200);
-    damage.flipBits(sound, kHeaderBytes, 300);
-    damage.flipBits(sound, sound.size(), 300);
-    damage.setIntegers(sound, kHeaderBytes, 400);
+    damage.cut(sound, 60);
+    damage.flipBits(sound, kHeaderBytes, 100);
+    damage.flipBits(sound, sound.size(), 100);
+    damage.setIntegers(sound, kHeaderBytes, 150);
     for (const char* attribute : {"dataWindow", "displayWindow"})
       for (const std::uint32_t side : {0u, 1023u, 32767u, 65535u, 0x7FFFFFFEu, 0x7FFFFFFFu, 0x80000000u})
         for (const std::uint32_t other : {0u, 65535u, 0x7FFFFFFEu}) {
@@ -136,8 +131,8 @@ void manifestSeeds(Damage& damage, const Use& use) {
   const json sound = harness::writeSampleFiles(folder);
   const std::string text = sound.dump();
   use(text);
-  damage.cut(text, 100);
-  damage.flipBits(text, text.size(), 300);
+  damage.cut(text, 50);
+  damage.flipBits(text, text.size(), 100);
   use(std::string(1000000, '['));
   damage.setValues(sound);
 }
@@ -145,9 +140,9 @@ void manifestSeeds(Damage& damage, const Use& use) {
 void gltfSeeds(Damage& damage, const Use& use) {
   const std::string sound = soundGlb();
   use(sound);
-  damage.cut(sound, 150);
-  damage.flipBits(sound, sound.size(), 300);
-  damage.setCharacters(sound, 600);
+  damage.cut(sound, 50);
+  damage.flipBits(sound, sound.size(), 100);
+  damage.setCharacters(sound, 200);
   // A document without its buffer, as .gltf.
   const std::size_t jsonBytes =
       static_cast<unsigned char>(sound[12]) + 256u * static_cast<unsigned char>(sound[13]);
@@ -169,7 +164,7 @@ void frameSeeds(Damage& damage, const Use& use) {
     bytes[4] = gathers;
     use(bytes.append(edit, sizeof edit));
   }
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 500; ++i) {
     std::string bytes = header;
     for (std::size_t k = 0; k < 6; ++k)
       if (damage.below(3) == 0) bytes[k] = static_cast<char>(damage.below(256));

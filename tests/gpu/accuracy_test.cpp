@@ -11,7 +11,7 @@ using namespace pellucid::test;
 
 using Accuracy = GpuTest;
 
-constexpr int kSide = 96;
+constexpr int kSide = 64;
 
 struct DepthFormat {
   const char* name;
@@ -31,8 +31,7 @@ TEST_F(Accuracy, ThicknessFromDeviceDepthKeepsWhatTheDepthsHold) {
   for (const DepthFormat& format :
        {DepthFormat{"D16", 16, false}, DepthFormat{"D24", 24, false}, DepthFormat{"D32 float", 0, false},
         DepthFormat{"D32 float, reversed", 0, true}})
-    for (const auto& [n, f] :
-         {std::pair{0.1, 10.0}, {0.1, 1000.0}, {0.01, 1000.0}, {0.01, double(INFINITY)}}) {
+    for (const auto& [n, f] : {std::pair{0.1, 10.0}, {0.01, double(INFINITY)}}) {
       SCOPED_TRACE(testing::Message() << format.name << ", " << n << " .. " << f);
       // Device depth = a + b / planar distance, as float matrices hold them.
       double a = std::isinf(f) ? 1 : f / (f - n), b = std::isinf(f) ? -n : -f * n / (f - n);
@@ -80,8 +79,8 @@ TEST_F(Accuracy, ThicknessFromDeviceDepthKeepsWhatTheDepthsHold) {
 TEST_F(Accuracy, SixteenBitColorsRoundAFewTimes) {
   Capture c = flatCapture(kSide, kSide);
   c.lights = {backLight()};
-  for (const double irradiance : {1e-4, 1e-2, 1.0, 1e3})
-    for (const uint32_t samples : {0u, 8u, 16u}) {
+  for (const double irradiance : {1e-4, 1e3})
+    for (const uint32_t samples : {0u, 8u}) {
       SCOPED_TRACE(testing::Message() << irradiance << ", " << samples << " samples");
       std::mt19937 random(11);
       std::uniform_real_distribution<float> factor(0.25f, 4);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "capture/material.h"
 #include "gpu_fixture.h"
 #include "reference/reference.h"
 #include "scene/environment.h"
@@ -13,8 +12,6 @@ namespace pellucid::test {
 namespace {
 
 using AmbientLight = GpuTest;
-
-PellucidMaterial skin() { return compileMaterial(PresetMaterial{"skin1"}, "skin1"); }
 
 ReplaySettings through() {
   ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);

@@ -36,7 +36,7 @@ class Cli : public testing::Test {
 protected:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  void expect(int code, const std::string& arguments, const std::string& sentence) const {
+  void expect(int code, const std::string& arguments, const std::string& sentence = "") const {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.text;
     EXPECT_NE(outcome.text.find(sentence), std::string::npos) << arguments << "\n" << outcome.text;

@@ -49,7 +49,7 @@ double sum(const Image& image, int channel) {
 
 // Wherever the spot lies against the pyramid, and far enough from the rim that all of it stays inside.
 TEST_F(Diffusion, IsolatedSpotKeepsItsEnergy) {
-  for (const auto& deviations : {std::initializer_list<double>{0.7}, {1.5}, {1, 4}, {0.5, 6}, {14}}) {
+  for (const auto& deviations : {std::initializer_list<double>{0.7}, {1, 4}, {14}}) {
     double total = 0, worst = 0;
     for (const auto& [x, y] : {std::pair(96, 96), std::pair(97, 99), std::pair(102, 98), std::pair(95, 93)}) {
       Capture c = dark(192, 192);
@@ -84,10 +84,7 @@ TEST_F(Diffusion, ShiftedRectGivesTheSamePixels) {
       const double pixel = pixelOf(*c);
       const std::vector<PellucidMaterial> m = {gaussians(deviations, pixel), gaussians({1}, pixel)};
       const Image whole = replayer().run(*c, m, diffusionOnly()).output;
-      for (const auto& rect : {std::array<uint32_t, 4>{1, 0, 127, 128},
-                               {2, 3, 120, 119},
-                               {7, 5, 114, 116},
-                               {13, 11, 110, 101}}) {
+      for (const auto& rect : {std::array<uint32_t, 4>{2, 3, 120, 119}, {13, 11, 110, 101}}) {
         ReplaySettings s = diffusionOnly();
         s.renderRect = rect;
         const Image part = replayer().run(*c, m, s).output;
@@ -279,8 +276,7 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
     std::initializer_list<double> deviations;
     uint32_t dropped;  // levels
   };
-  for (const Row& row :
-       {Row{{0.5}, 4}, {{2}, 4}, {{4}, 4}, {{5.5}, 4}, {{0.7, 1.5, 3, 5.5}, 4}, {{7}, 2}, {{1, 21.5}, 2}}) {
+  for (const Row& row : {Row{{0.7, 1.5, 3, 5.5}, 4}, {{7}, 2}, {{1, 21.5}, 2}}) {
     const PellucidMaterial m = gaussians(row.deviations, 0.5);
     ReplaySettings s = diffusionOnly();
     const ReplayResult all = replayer().run(c, {m}, s);

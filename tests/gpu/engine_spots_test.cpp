@@ -3,7 +3,6 @@
 // spots.
 #include <algorithm>
 
-#include "capture/material.h"
 #include "common/compare.h"
 #include "gpu_fixture.h"
 #include "metrics/spots.h"
@@ -57,14 +56,9 @@ protected:
   }
   // All spots, and those that the plain maps' picture lacks.
   static std::pair<std::size_t, std::size_t> spots(const Capture& c, const Capture& plain) {
-    ReplaySettings settings;
-    settings.translucency.gatherSamples = 8;
-    settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     const Surfaces surfaces(c);
     const auto seen = [&](const Image& image) { return SpotImage(image, surfaces, c.material); };
-    const auto run = [&](const Capture& of) {
-      return seen(rgb(replayer().run(of, compileMaterials(of), settings).output));
-    };
+    const auto run = [&](const Capture& of) { return seen(rgb(replay(of, gathering(8)))); };
     const SpotImage result = run(c), expected = run(plain), input = seen(litAlbedo(c));
     const std::vector<Spot> all = result.find(&input);
     return {all.size(), result.lackedBy(expected, all).size()};
@@ -92,23 +86,6 @@ const EngineFrame kFrames[] = {
      [](RasterOptions& o) {
        biased(o, 16, 80, 0);  // 2.5 texels of a map of 2048 around the model
        o.shadow.normalOffset = 2.5;
-     }},
-    {"Cascades",
-     [](RasterOptions& o) {
-       biased(o, 16, 4, 3);
-       o.shadow.cascades = 4;
-       o.shadow.placement = MapPlacement::Array;
-     }},
-    {"Filtered",
-     [](RasterOptions& o) {
-       biased(o, 32, 1.25, 1.75);
-       o.shadow.filter = 7;
-     }},
-    {"Jittered",
-     [](RasterOptions& o) {
-       biased(o, 16, 4, 3);
-       o.shadow.filter = 1;
-       o.jitter = {0.37, -0.21};
      }},
 };
 

@@ -78,32 +78,23 @@ Capture spoiled(PellucidDepthEncoding encoding) {
 }
 
 TEST_F(GpuTest, NoGuardReliesOnComparisonsThatAreFalseForNan) {
-  const Context plain(device());
+  const Context& plain = replayer().contextFor({});
   changedComparisons = 0;
   const Context unordered(device(),
                           [](PellucidContextDesc& d) { d.getInstanceProcAddr = &instanceFunction; });
-  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE})
-    for (const uint32_t samples : {0u, 8u})
-      for (const bool normals : {true, false}) {
-        Capture c = spoiled(encoding);
-        if (!normals) c.normal = {};
-        ReplaySettings s;
-        s.translucency.gatherSamples = samples;
-        s.indirectDispatches = 1;
-        const auto output = [&](const Context& context) {
-          const FrameRun run(device(), context, c, {testMaterial()}, s);
-          device().run([&](VkCommandBuffer commands) { run.record(commands); });
-          return run.output();
-        };
-        const Image expected = output(plain);
-        size_t infinite = 0;
-        for (size_t i = 0; i < c.material.size(); ++i)
-          for (int channel = 0; c.material[i] != 0 && channel < 3; ++channel)
-            infinite += std::isfinite(expected.data[4 * i + channel]) ? 0 : 1;
-        EXPECT_EQ(infinite, 0u);
-        EXPECT_TRUE(sameBits(output(unordered), expected))
-            << "encoding " << encoding << ", samples " << samples << ", normals " << normals;
-      }
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_DISTANCE})
+    for (const uint32_t samples : {0u, 8u}) {
+      Capture c = spoiled(encoding);
+      if (encoding == PELLUCID_DEPTH_DISTANCE) c.normal = {};
+      ReplaySettings s;
+      s.translucency.gatherSamples = samples;
+      const Image expected = record(FrameRun(device(), plain, c, {testMaterial()}, s));
+      for (size_t i = 0; i < c.material.size(); ++i)
+        for (size_t channel = 0; c.material[i] != 0 && channel < 3; ++channel)
+          ASSERT_TRUE(std::isfinite(expected.data[4 * i + channel])) << i;
+      EXPECT_TRUE(sameBits(record(FrameRun(device(), unordered, c, {testMaterial()}, s)), expected))
+          << "encoding " << encoding << ", samples " << samples;
+    }
   EXPECT_GT(changedComparisons, 100u);
 }
 

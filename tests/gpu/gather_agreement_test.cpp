@@ -6,7 +6,6 @@
 #include <functional>
 #include <map>
 
-#include "capture/material.h"
 #include "common/compare.h"
 #include "pellucid/pellucid_material.h"
 #include "scene/scene.h"
@@ -14,11 +13,6 @@
 namespace {
 
 using namespace pellucid::test;
-
-const PellucidMaterial& skin() {
-  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
-  return compiled;
-}
 
 // Diffusion leaves constant irradiance alone on both sides, so that what remains is the gather.
 Capture evenlyLit(SceneParameters p, float irradiance = 0.2f) {
@@ -46,10 +40,8 @@ double error(const Capture& c, const Image& a, const Image& b) {
 class GatherAgreement : public GpuTest {
 protected:
   static Image gathered(const Capture& c, uint32_t samples = 8, uint32_t spacing = 0) {
-    ReplaySettings s = inFloats();
-    s.translucency.gatherSamples = samples;
-    s.translucency.gatherSpacing = spacing;
-    return rgb(replayer().run(c, std::vector<PellucidMaterial>(c.materials.size(), skin()), s).output);
+    const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
+    return rgb(replayer().run(c, materials, gathering(samples, spacing)).output);
   }
 };
 
@@ -91,8 +83,8 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
       for (int i = 0; light.type == PELLUCID_LIGHT_SPOT && i < PELLUCID_LIGHT_TABLE_ENTRIES; ++i)
         light.angleTable.push_back(std::max(0.0, 1 - 8.0 * i / (PELLUCID_LIGHT_TABLE_ENTRIES - 1)));
     }
-    // Every fourth of the blocks that error() averages, along each row another one.
-    const auto wanted = [](int x, int y) { return (x / 4 + y / 4) % 4 == 0; };
+    // Every eighth of the blocks that error() averages, along each row another one.
+    const auto wanted = [](int x, int y) { return (x / 4 + 3 * (y / 4)) % 8 == 0; };
     const Image all = gatherOfAllTexels(c, c.irradiance, wanted);
     Capture compared = c;
     for (int y = 0; y < c.height; ++y)
@@ -105,8 +97,8 @@ TEST_F(GatherAgreement, SixteenSamplesAreNearAllTexels) {
 // A plane that faces the light and the camera gets nothing from itself, at grazing light, with coarse maps
 // and rounded depths, with and without a bias.
 TEST_F(GatherAgreement, LitPlanesDoNotGlow) {
-  for (const double angle : {120.0, 150.0, 100.0})
-    for (const int shadowSize : {64, 512}) {
+  for (const double angle : {150.0, 100.0})
+    for (const int shadowSize : {64, 256}) {
       const SceneParameters p{.name = "slab",
                               .width = 64,
                               .height = 64,
@@ -133,7 +125,7 @@ TEST_F(GatherAgreement, FlatPartsAreSmooth) {
                             .width = 96,
                             .height = 96,
                             .options = {{"thickness", 2}, {"tilt", tilt}, {"extent", 24}},
-                            .shadowSize = 512};
+                            .shadowSize = 256};
     const Capture c = evenlyLit(p, 0);
     const Image out = gathered(c, 8);
     for (int k = 0; k < 3; ++k) {
@@ -145,7 +137,6 @@ TEST_F(GatherAgreement, FlatPartsAreSmooth) {
           square += v * v;
         }
       const double mean = sum / 64, deviation = std::sqrt(std::max(0.0, square / 64 - mean * mean));
-      std::printf("tilt %.0f channel %d: deviation %.5f of the mean\n", tilt, k, deviation / mean);
       // Light at 60 degrees to the tilted plane: rings around an axis between the two are not quite even.
       EXPECT_LT(deviation, (tilt > 0 ? 0.02 : 0.002) * mean) << tilt;
     }
@@ -209,30 +200,24 @@ TEST_F(GatherAgreement, KeptPointsDisplaceToo) {
                                .height = 64,
                                .options = {{"radius", 8}, {"extent", 20}, {"lightAngle", 60}},
                                .shadowSize = 192});
-  const Context& context = replayer().contextFor(c);
   for (const uint32_t spacing : {1u, 4u}) {
-    ReplaySettings s = inFloats();
-    s.translucency.gatherSamples = 8;
-    s.translucency.gatherSpacing = spacing;
-    const Image expected = rgb(replayer().run(c, {skin()}, s).output);
+    ReplaySettings s = gathering(8, spacing);
+    const Image expected = replay(c, skin(), s);
     s.reuse = PELLUCID_REUSE_ALTERNATE;
-    std::unique_ptr<FrameRun> last;
+    Sequence sequence;
     for (int i = 0; i < 2; ++i) {
-      auto run = std::make_unique<FrameRun>(device(), context, c, std::vector{skin()}, s, last.get());
-      device().run([&](VkCommandBuffer commands) { run->record(commands); });
-      EXPECT_EQ(run->plan().historyAge, static_cast<uint32_t>(i));
-      const Image out = rgb(run->output());
+      const Image out = sequence.run(c, skin(), s);
+      EXPECT_EQ(sequence.last->plan().historyAge, static_cast<uint32_t>(i));
       for (size_t k = 0; k < out.data.size(); ++k)
         ASSERT_NEAR(out.data[k], expected.data[k], 1e-6f) << "spacing " << spacing << " frame " << i;
-      last = std::move(run);
     }
   }
 }
 
 // From lit to unlit across the terminator, in light from all around: no gap and no seam.
 TEST_F(GatherAgreement, TerminatorIsContinuous) {
-  for (const char* name : {"sphere", "torus"})
-    for (const double angle : {30.0, 90.0, 150.0}) {
+  for (const auto& [name, angles] : {std::pair("sphere", std::array{90.0, 150.0}), {"torus", {30.0, 90.0}}})
+    for (const double angle : angles) {
       SceneParameters p{.name = name, .options = {{"extent", 24}, {"lightAngle", angle}}};
       if (p.name == "sphere")
         p.options["radius"] = 8;
@@ -265,10 +250,6 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
           peak[k] = std::max(peak[k], static_cast<double>(all.at(x, 48)[k]));
         }
       }
-      std::printf("%s %.0f: second differences", name, angle);
-      for (int k = 0; k < 3; ++k)
-        std::printf(" %.4f (all texels %.4f)", worstGpu[k] / peak[k], worstAll[k] / peak[k]);
-      std::printf("\n");
       // Half as much again for 16 samples, and 7 % of the peak for what neighboring points differ by: red
       // light through the torus at 30 degrees has 6.7 %.
       for (int k = 0; k < 3; ++k) EXPECT_LT(worstGpu[k], 1.5 * worstAll[k] + 0.07 * peak[k]) << name << angle;
@@ -281,7 +262,7 @@ TEST_F(GatherAgreement, TerminatorIsContinuous) {
 const Capture& head(const std::map<std::string, double>& options) {
   static std::map<std::map<std::string, double>, Capture> made;
   if (const auto found = made.find(options); found != made.end()) return found->second;
-  Capture c = makeScene({.name = "head", .width = 160, .height = 90, .options = options, .shadowSize = 256});
+  Capture c = makeScene({.name = "head", .width = 96, .height = 72, .options = options, .shadowSize = 128});
   c.albedo = {};
   return made.emplace(options, std::move(c)).first->second;
 }
@@ -327,15 +308,11 @@ TEST_F(GatherAgreement, TwoLightsAddUp) {
   ASSERT_EQ(both.lights.size(), 2u);
   const Capture key = only(both, 0, {{"rimLight", 0}}), rim = only(both, 1, {{"keyLight", 0}});
   for (const uint32_t spacing : {1u, 4u}) {
-    const Difference d =
-        difference(both, gathered(both, 8, spacing), sum(gathered(key, 8, spacing), gathered(rim, 8, spacing)));
-    std::printf("spacing %u: relative RMSE from the sum %.5f, worst %.4f\n", spacing, d.rmse, d.worst);
+    const Difference d = difference(both, gathered(both, 8, spacing),
+                                    sum(gathered(key, 8, spacing), gathered(rim, 8, spacing)));
     EXPECT_LT(d.rmse, kSumRmse);
     EXPECT_LT(d.worst, kSumWorst);
   }
-  Capture swapped = both;
-  std::swap(swapped.lights[0], swapped.lights[1]);
-  EXPECT_LT(difference(both, gathered(swapped), gathered(both)).rmse, 1e-3);
 }
 
 // Curved surfaces return the same share of light with and without lights: a light of next to nothing leaves
@@ -344,18 +321,20 @@ TEST_F(GatherAgreement, TwoLightsAddUp) {
 TEST_F(GatherAgreement, ALightOfNextToNothingChangesNothing) {
   Capture dark = head({{"rimLight", 0}});
   std::fill(dark.irradiance.data.begin(), dark.irradiance.data.end(), 0.25f);
-  for (const uint32_t spacing : {1u, 2u, 4u})
+  Capture none = dark;
+  none.lights.clear();
+  for (const uint32_t spacing : {1u, 4u}) {
+    dark.lights.front().intensity = 0;
+    const Image expected = gathered(dark, 8, spacing);
+    EXPECT_LT(difference(dark, gathered(none, 8, spacing), expected).worst, 0x1p-11);
     for (const bool mapped : {true, false}) {
       Capture lit = dark;
-      dark.lights.front().intensity = 0;
       lit.lights.front().intensity = 1e-6;
       if (!mapped) lit.lights.front().shadowMaps.clear();
-      const Difference d = difference(dark, gathered(lit, 8, spacing), gathered(dark, 8, spacing));
+      const Difference d = difference(dark, gathered(lit, 8, spacing), expected);
       EXPECT_LT(d.worst, 0x1p-11) << "spacing " << spacing << ", mapped " << mapped;
-      Capture none = dark;
-      none.lights.clear();
-      EXPECT_LT(difference(dark, gathered(none, 8, spacing), gathered(dark, 8, spacing)).worst, 0x1p-11);
     }
+  }
   // And curvature does return more and less than a plane.
   const Image out = gathered(dark, 8, 1);
   EXPECT_GT(*std::max_element(out.data.begin(), out.data.end()), 0.25f * 1.02f);
@@ -388,7 +367,7 @@ TEST_F(GatherAgreement, AmbientLightStays) {
 
 // Lit from the front, a slab sends back R(h) and no half-space's rho.
 TEST_F(GatherAgreement, ThinSlabsReturnLess) {
-  for (const double thickness : {0.5, 1.0, 2.0, 4.0}) {
+  for (const double thickness : {0.5, 2.0}) {
     Capture c = makeScene({.name = "slab",
                            .width = 48,
                            .height = 48,

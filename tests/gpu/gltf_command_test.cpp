@@ -28,9 +28,7 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
   const std::string file = write("t.glb", triangle()), out = path("o.exr");
   const std::string capture = "capture " + file + " --size 16x16 -o " + out;
   expect(3, capture, "t.glb: materials: none is translucent; --material NAME=PRESET");
-  expect(3, capture, "there are wax, default");
   EXPECT_FALSE(std::filesystem::exists(out));
-  expect(0, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 0.3]}')", "wrote");
   expect(3, capture + R"( --material 'wax={"subsurface_color": [0.8, 0.5, 3]}')",
          "subsurface_color[2]: must be");
   expect(0, capture + " --material 'wax=skin1'", "wrote");
@@ -49,14 +47,13 @@ TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
   }
   const std::string ball = "capture --procedural sphere --set extent=9 --size 32x32 -o " + out;
   expect(0, ball + " --set radius=1.5", "is less than 4 transport mean free paths, which are ");
-  EXPECT_EQ(run(ball + " --set radius=4").text, "");
 }
 
 // A triangle that nothing but the camera moves: its light stays where it is on the surface.
 TEST_F(GltfCommand, FlickerFollowsPaths) {
   const std::string flicker = "flicker " + write("t.glb", triangle()) +
                               " --size 96x96 --shadow-size 64 --unit cm --material wax=skin1 --light back --pixels 1 ";
-  const Outcome outcome = run(flicker + "--path orbit,blink --frames 3 --json");
+  const Outcome outcome = run(flicker + "--path orbit --frames 3 --json --picture " + path("f.png"));
   EXPECT_EQ(outcome.code, 0) << outcome.text;
   const std::size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
   const auto changes = nlohmann::json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
@@ -68,12 +65,10 @@ TEST_F(GltfCommand, FlickerFollowsPaths) {
     EXPECT_GT(change["pixels"], 1000) << change;
     EXPECT_LT(change["rel_rmse"][0], 0.02) << change;
   }
-  EXPECT_EQ(paths, 4);
-  expect(0, flicker + "--path orbit --frames 9 --picture " + path("f.png"), "path orbit");
-  const std::string png = bytes("f.png");
-  ASSERT_GT(png.size(), 24u);
-  // Four frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's header.
-  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x01\x8c\0\0\0\xc0", 8));
+  EXPECT_EQ(paths, 2);
+  // Two frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's
+  // header.
+  EXPECT_EQ(bytes("f.png").substr(16, 8), std::string("\0\0\0\xc4\0\0\0\xc0", 8));
   expect(2, flicker + "--path orbit,pan --picture x.png", "--picture: shows one path");
   expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");
 }

@@ -9,7 +9,9 @@
 #include <memory>
 #include <string>
 
+#include "capture/material.h"
 #include "common/device.h"
+#include "refusal.h"
 #include "replay/replay.h"
 
 namespace pellucid::test {
@@ -37,6 +39,29 @@ protected:
                       const ReplaySettings& settings = {}) {
     return replayer().run(capture, {material}, settings).output;
   }
+  // With the capture's own materials.
+  static Image replay(const Capture& capture, const ReplaySettings& settings) {
+    return replayer().run(capture, compileMaterials(capture), settings).output;
+  }
+  static Image record(const FrameRun& run) {
+    device().run([&](VkCommandBuffer commands) { run.record(commands); });
+    return run.output();
+  }
+  static std::string refusalOfRecording(const FrameRun& run) {
+    std::string sentence;
+    device().run([&](VkCommandBuffer commands) { sentence = refusalOf([&] { run.record(commands); }); });
+    return sentence;
+  }
+
+  // Frames of one size, each of which goes on with the history of the one before.
+  struct Sequence {
+    std::unique_ptr<FrameRun> last;
+    Image run(const Capture& capture, const PellucidMaterial& material, const ReplaySettings& settings) {
+      last = std::make_unique<FrameRun>(device(), replayer().contextFor(capture), capture,
+                                        std::vector{material}, settings, last.get());
+      return record(*last);
+    }
+  };
 
 private:
   size_t messagesBefore_ = 0;
@@ -48,6 +73,32 @@ inline ReplaySettings inFloats(uint32_t features = ReplaySettings{}.features) {
   settings.features = features;
   settings.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
   return settings;
+}
+
+inline ReplaySettings gathering(uint32_t samples,
+                                uint32_t spacing = ReplaySettings{}.translucency.gatherSpacing) {
+  ReplaySettings settings = inFloats();
+  settings.translucency.gatherSamples = samples;
+  settings.translucency.gatherSpacing = spacing;
+  return settings;
+}
+
+inline const PellucidMaterial& skin() {
+  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
+  return compiled;
+}
+
+// RMS of a - b over the RMS of b, in RGB where there is a material; everywhere without `material`.
+inline double relativeRmse(const Image& a, const Image& b, const std::vector<std::uint8_t>& material = {}) {
+  double square = 0, power = 0;
+  for (size_t i = 0; i < a.pixels(); ++i)
+    for (size_t k = 0; k < 3 && (material.empty() || material[i] != 0); ++k) {
+      const auto va = static_cast<double>(a.data[i * static_cast<size_t>(a.channels) + k]);
+      const auto vb = static_cast<double>(b.data[i * static_cast<size_t>(b.channels) + k]);
+      square += (va - vb) * (va - vb);
+      power += vb * vb;
+    }
+  return std::sqrt(square / power);
 }
 
 // T = e^{-d / 2 mm} in red, e^{-d} in green, 0.7 e^{-2 d} + 0.3 e^{-d / 4 mm} in blue.

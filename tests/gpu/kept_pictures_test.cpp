@@ -1,5 +1,4 @@
-// Pictures that the documents show, made again: a change of a pixel is deliberate, and comes with the new
-// picture.
+// Pictures of the demo's ear, made again: a change of a pixel is deliberate, and comes with the new picture.
 #include <stb/stb_image.h>
 
 #include <cstdlib>
@@ -23,14 +22,14 @@ struct Pixels {
 
 class KeptPictures : public Cli {
 protected:
-  // `name`: of docs/images.
+  // `name`: of tests/gpu/pictures.
   void expectAgain(const std::string& options, const char* name) {
     const std::string picture = path(name);
     expect(0,
            "replay " + path("ear.exr") + " --repeat 0 -o " + path("out.exr") + " --triptych " + picture +
                options,
            "wrote");
-    const Pixels made(picture), kept(std::string(PELLUCID_SOURCE_DIR "/docs/images/") + name);
+    const Pixels made(picture), kept(std::string(PELLUCID_SOURCE_DIR "/tests/gpu/pictures/") + name);
     ASSERT_TRUE(made.rgb && kept.rgb) << name;
     ASSERT_EQ(made.width, kept.width);
     ASSERT_EQ(made.height, kept.height);
@@ -49,8 +48,8 @@ protected:
 };
 
 TEST_F(KeptPictures, AreMadeAgain) {
-  expect(0, "capture --procedural ear --size 512x512 -o " + path("ear.exr"), "");
-  expectAgain("", "demo.png");
+  expect(0, "capture --procedural ear --size 128x128 --shadow-size 256 -o " + path("ear.exr"));
+  expectAgain("", "gather.png");
   expectAgain(" --set gather=0", "thickness.png");
 }
 

@@ -82,9 +82,6 @@ TEST_F(Memory, CapturesThatDoNotFitAreRefused) {
   const std::string out = " -o " + path("o.exr");
   expectWithin(600, 3, "replay " + path("large.json") + out,
                {path("large"), "needs more memory than there is"});
-  expectWithin(600, 3, "info " + path("large.json"), {path("large"), "needs more memory than there is"});
-  expectWithin(600, 3, "compare " + path("large.exr") + " " + path("large.exr"),
-               {path("large.exr"), "needs more memory than there is"});
   EXPECT_FALSE(std::filesystem::exists(path("o.exr")));
 }
 
@@ -95,9 +92,7 @@ TEST_F(Memory, HeadersThatClaimTooMuchAreRefusedAtOnce) {
     int32_t x, y;
     const char* sentence;
   } rows[] = {{"displayWindow", 65535, 65535, "65536x65536 pixels"},
-              {"displayWindow", 65535, 0, "65536x1 pixels"},
               {"displayWindow", 32767, 32767, "32768x32768 pixels"},
-              {"dataWindow", 65535, 65535, ""},
               {"dataWindow", 65535, 0, ""},
               {"dataWindow", 0x7FFFFFFE, 0x7FFFFFFE, ""},
               {"displayWindow", 0x7FFFFFFE, 0, ""}};
@@ -105,10 +100,7 @@ TEST_F(Memory, HeadersThatClaimTooMuchAreRefusedAtOnce) {
     SCOPED_TRACE(std::string(row.attribute) + " " + std::to_string(row.x));
     writeCapture("claim", 4, 4);
     setBox("claim.exr", row.attribute, row.x, row.y);
-    const std::string out = " -o " + path("o.exr");
-    expectWithin(300, 3, "replay " + path("claim.json") + out, {path("claim.exr"), row.sentence});
-    expectWithin(300, 3, "compare " + path("claim.exr") + " " + path("claim.exr"),
-                 {path("claim.exr"), row.sentence});
+    expectWithin(300, 3, "info " + path("claim.json"), {path("claim.exr"), row.sentence});
   }
 }
 
@@ -157,23 +149,13 @@ TEST_F(Memory, WorkThatDoesNotFitIsRefused) {
 // what they are. Where nothing can be written a sentence says so.
 TEST_F(Memory, DevicesAreNotReplaced) {
   writeCapture("small", 8, 8);
-  const std::string capture = path("small.json"), image = path("small.exr");
-  ASSERT_EQ(run("capture --procedural sphere --size 8x8 --shadow-size 8 -o " + path("c.exr")).code, 0);
-  const std::string small = "--procedural sphere --size 8x8 --shadow-size 8";
-  const std::vector<std::string> commands = {
-      "capture " + small + " -o @.exr",
-      "replay " + capture + " --repeat 0 -o @.exr",
-      "sheet " + image + " -o @.png",
-      "compare " + image + " " + image + " --ratio @.png",
-      "measure-dots --procedural sphere --entries 2 --steps 1 --size 16x16 --shadow-size 16 -o @.json"};
-  for (const std::string& arguments : commands) {
-    const std::string name = "full" + arguments.substr(arguments.find('@') + 1);
+  const std::string image = path("small.exr"),
+                    small = "capture --procedural sphere --size 8x8 --shadow-size 8 -o ";
+  for (const auto& [command, name] : {std::pair(small, "full.exr"),
+                                      {"replay " + path("small.json") + " --repeat 0 -o ", "full.exr"},
+                                      {"compare " + image + " " + image + " --ratio ", "full.png"}}) {
     std::filesystem::create_symlink("/dev/full", path(name));
-    std::string command = arguments;
-    command.replace(command.find('@'), 1, path("full"));
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.code, 3) << command << "\n" << outcome.text;
-    EXPECT_NE(outcome.text.find(path(name)), std::string::npos) << command << "\n" << outcome.text;
+    expect(3, command + path(name), path(name));
     EXPECT_TRUE(std::filesystem::is_symlink(path(name))) << command;
     std::filesystem::remove(path(name));
   }

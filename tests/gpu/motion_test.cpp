@@ -1,7 +1,6 @@
 // Noise in motion: cells that follow an anchor, and probes that are averaged over frames.
 #include "gpu_fixture.h"
 
-#include "capture/material.h"
 #include "common/compare.h"
 #include "common/far_origin.h"
 #include "metrics/flicker.h"
@@ -13,74 +12,58 @@ namespace {
 
 using namespace pellucid::test;
 
-const PellucidMaterial& skin() {
-  static const PellucidMaterial compiled = compileMaterial(PresetMaterial{"skin1"}, "skin1");
-  return compiled;
-}
-
 // A ball lit from the side, before nothing: its patterns of samples show.
-Capture ball() {
-  SceneParameters p{.name = "sphere", .options = {{"radius", 8}, {"extent", 24}, {"lightAngle", 70}}};
-  p.width = p.height = 160;
-  p.shadowSize = 256;
-  p.orthographic = false;
-  return movedCapture(makeScene(p), 0, 0, 6);
+const Capture& ball() {
+  static const Capture made = [] {
+    SceneParameters p{.name = "sphere", .options = {{"radius", 8}, {"extent", 24}, {"lightAngle", 70}}};
+    p.width = p.height = 96;
+    p.shadowSize = 160;
+    p.orthographic = false;
+    return movedCapture(makeScene(p), 0, 0, 6);
+  }();
+  return made;
 }
 
 // The ball's front, in the world.
 constexpr std::array<float, 4> kAnchor = {0, 0, 8, 1};
 
-ReplaySettings settings(uint32_t spacing = 1) {
-  ReplaySettings s = inFloats();
-  s.translucency.gatherSamples = 8;
-  s.translucency.gatherSpacing = spacing;
-  return s;
-}
-
 Mask maskOf(const Capture& c) { return comparisonMask(c.material, c.irradiance, Subset::All); }
 
-double rmse(const Capture& c, const Image& a, const Image& b) {
-  double worst = 0;
-  for (const auto& channel : compareImages(a, b, maskOf(c), 1).channels)
-    worst = std::max(worst, channel.relativeRmse);
-  return worst;
-}
+double rmse(const Capture& c, const Image& a, const Image& b) { return relativeRmse(a, b, c.material); }
 
 class Motion : public GpuTest {
 protected:
   static Image rgbOf(const Capture& c, const ReplaySettings& s) { return rgb(replay(c, skin(), s)); }
+  static Image next(Sequence& sequence, const Capture& c, const ReplaySettings& s) {
+    return rgb(sequence.run(c, skin(), s));
+  }
 };
 
 // ---- Anchor
 
 // By all steps of a cell, and across blocks of 64 pixels. Rays are rounded elsewhere.
 TEST_F(Motion, AnchoredNoiseMovesWithTheBody) {
-  const Capture still = ball();
-  for (const uint32_t spacing : {1u, 2u, 4u}) {
-    ReplaySettings s = settings(spacing);
-    const Image onScreen = rgbOf(still, s);
-    double loose = 0;
-    for (const bool anchored : {true, false}) {
-      s.anchor = anchored ? kAnchor : std::array<float, 4>{};
-      const Image before = anchored ? rgbOf(still, s) : onScreen;
-      for (const int k : {1, 2, 3, 6, -5}) {
-        const Flicker flicker =
-            compareShifted(before, rgbOf(movedCapture(still, k, k / 2, 6), s), maskOf(still), k, k / 2);
-        for (const double e : flicker.relativeRmse) {
-          EXPECT_TRUE(!anchored || e < 2e-4) << e << ", spacing " << spacing << ", " << k << " pixels";
-          loose = std::max(loose, e);
-        }
-      }
-    }
-    EXPECT_GT(loose, 0.004) << "there is no noise to keep, spacing " << spacing;
+  const Capture& still = ball();
+  for (const uint32_t spacing : {1u, 4u}) {
+    ReplaySettings anchored = gathering(8, spacing);
+    const auto change = [&](const ReplaySettings& s, const Image& before, int k) {
+      const Image now = rgbOf(movedCapture(still, k, k / 2, 6), s);
+      const auto rmse = compareShifted(before, now, maskOf(still), k, k / 2).relativeRmse;
+      return *std::max_element(rmse.begin(), rmse.end());
+    };
+    EXPECT_GT(change(anchored, rgbOf(still, anchored), 3), 0.004)
+        << "there is no noise to keep, spacing " << spacing;
+    anchored.anchor = kAnchor;
+    const Image before = rgbOf(still, anchored);
+    for (const int k : {1, 2, 3, -5})
+      EXPECT_LT(change(anchored, before, k), 3e-4) << "spacing " << spacing << ", " << k << " pixels";
   }
 }
 
 // An anchor changes noise and no light.
 TEST_F(Motion, AnchorKeepsLight) {
-  const Capture c = ball();
-  ReplaySettings s = settings();
-  s.translucency.gatherSamples = 64;
+  const Capture& c = ball();
+  ReplaySettings s = gathering(64);
   const Image expected = rgbOf(c, s);
   for (const std::array<float, 4> anchor : {kAnchor, std::array<float, 4>{3, -2, 5, 1}, std::array<float, 4>{1e6f, 0, 0, 1}}) {
     s.anchor = anchor;
@@ -92,7 +75,7 @@ TEST_F(Motion, AnchorKeepsLight) {
 
 // The whole scene elsewhere in the world, where floats are too coarse: replays move the anchor with the world's origin.
 TEST_F(Motion, AnchorsOfFarScenesAreTheirBodies) {
-  const Capture near = ball();
+  const Capture& near = ball();
   constexpr std::array<double, 3> kOffset = {1 << 20, -(1 << 18), 1 << 19};
   const auto moved = [&](const Matrix& fromWorld) {
     return fromOrigin(fromWorld, {-kOffset[0], -kOffset[1], -kOffset[2]});
@@ -105,7 +88,7 @@ TEST_F(Motion, AnchorsOfFarScenesAreTheirBodies) {
       if (map.viewFromWorld) map.viewFromWorld = moved(*map.viewFromWorld);
     }
   ASSERT_NE(worldOrigin(far), (std::array<double, 3>{0, 0, 0}));
-  ReplaySettings s = settings();
+  ReplaySettings s = gathering(8);
   s.anchor = kAnchor;
   const Image expected = rgbOf(near, s);
   EXPECT_GT(rmse(near, rgbOf(far, s), expected), 0.004) << "there is no noise to tell anchors apart";
@@ -115,12 +98,11 @@ TEST_F(Motion, AnchorsOfFarScenesAreTheirBodies) {
 
 // Nothing but the rect is written, and an anchor changes its noise alone.
 TEST_F(Motion, AnchoredRectIsThePart) {
-  const Capture c = ball();
-  ReplaySettings s = settings(2);
-  s.translucency.gatherSamples = 64;
+  const Capture& c = ball();
+  ReplaySettings s = gathering(64, 2);
   s.anchor = {1, 2, 5, 1};
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  s.renderRect = {37, 41, 70, 50};
+  s.renderRect = {21, 25, 44, 30};
   const Image part = rgbOf(c, s);
   s.anchor = {};
   const Image loose = rgbOf(c, s);
@@ -128,109 +110,85 @@ TEST_F(Motion, AnchoredRectIsThePart) {
   EXPECT_LT(rmse(c, part, loose), 0.01);
   for (int y = 0; y < c.height; ++y)
     for (int x = 0; x < c.width; ++x) {
-      const bool outside = x < 37 || x >= 107 || y < 41 || y >= 91;
-      for (int k = 0; k < 3; ++k) {
-        const float* albedo = c.albedo.empty() ? nullptr : c.albedo.at(x, y);
-        const float untouched = c.irradiance.at(x, y)[k] * (albedo ? albedo[k] : 1);
-        ASSERT_TRUE(!outside || part.at(x, y)[k] == untouched) << x << ", " << y;
-      }
+      const bool outside = x < 21 || x >= 65 || y < 25 || y >= 55;
+      for (int k = 0; outside && k < 3; ++k)
+        ASSERT_EQ(part.at(x, y)[k], c.irradiance.at(x, y)[k] * (c.albedo.empty() ? 1 : c.albedo.at(x, y)[k]))
+            << x << ", " << y;
     }
 }
 
 // ---- Accumulation
 
 ReplaySettings accumulated(uint32_t spacing = 1) {
-  ReplaySettings s = settings(spacing);
+  ReplaySettings s = gathering(8, spacing);
   s.reuse = PELLUCID_REUSE_ACCUMULATE;
   return s;
 }
 
-TEST_F(Motion, StillFramesConverge) {
-  const Capture c = ball();
-  ReplaySettings many = settings();
-  many.translucency.gatherSamples = 64;
-  const Image expected = rgbOf(c, many);
-  ReplaySequence sequence(device());
-  const double first = rmse(c, rgb(sequence.run(c, {skin()}, accumulated())), expected);
-  Image last;
-  double change = 0;
-  for (int i = 0; i < 40; ++i) {
-    Image now = rgb(sequence.run(c, {skin()}, accumulated()));
-    if (i == 39) change = rmse(c, now, last);
-    last = std::move(now);
-  }
-  // Eight samples have an error of their own, which no frame takes away.
-  EXPECT_LT(rmse(c, last, expected), 0.9 * first);
-  EXPECT_LT(change, 0.1 * first);
-}
-
 // The frame before was elsewhere on the screen, which the motion image says; without it the light of other places is kept.
-TEST_F(Motion, KeptLightFollowsTheMotion) {
-  const Capture still = ball();
+TEST_F(Motion, KeptLightConvergesAndFollowsTheMotion) {
+  const Capture& still = ball();
   for (const uint32_t spacing : {1u, 4u}) {
-    ReplaySequence sequence(device());
-    Image before;
-    Capture last = still;
+    Sequence sequence;
     // The diffusion's own change is not the probes'.
-    ReplaySettings kept = accumulated(spacing), alike = settings(spacing);
-    kept.features = alike.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    for (int i = 0; i < 25; ++i) before = rgb(sequence.run(still, {skin()}, kept));
-    for (const int x : {4, 8}) {
-      Capture moved = movedCapture(still, x / 2, -x / 4, 6);
-      moved.motion = Reprojection(last, moved).motion();
-      const Image now = rgb(sequence.run(moved, {skin()}, kept));
-      const Flicker flicker = compareShifted(before, now, maskOf(still), x / 2, -x / 4);
-      const Flicker alone = compareShifted(rgbOf(still, alike), rgbOf(moved, alike), maskOf(still), x / 2, -x / 4);
-      for (std::size_t c = 0; c < 3; ++c) {
-        // Pixels lie elsewhere between probes of cells of 4 pixels, whose light is no noise.
-        EXPECT_LT(flicker.relativeRmse[c], (spacing == 1 ? 0.5 : 1.0) * alone.relativeRmse[c]) << spacing;
-      }
-      last = std::move(moved);
+    ReplaySettings kept = accumulated(spacing), alike = gathering(8, spacing), many = gathering(64, spacing);
+    kept.features = alike.features = many.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    const Image first = next(sequence, still, kept), expected = rgbOf(still, many);
+    Image before, last;
+    for (int i = 0; i < 14; ++i) {
+      last = std::move(before);
+      before = next(sequence, still, kept);
     }
+    // Eight samples have an error of their own, which no frame takes away.
+    const double error = rmse(still, first, expected);
+    EXPECT_LT(rmse(still, before, expected), (spacing == 1 ? 0.9 : 0.95) * error) << spacing;
+    EXPECT_LT(rmse(still, before, last), 0.2 * error) << spacing;
+    Capture moved = movedCapture(still, 4, -2, 6);
+    moved.motion = Reprojection(still, moved).motion();
+    const Image now = next(sequence, moved, kept);
+    const Flicker flicker = compareShifted(before, now, maskOf(still), 4, -2),
+                  alone = compareShifted(rgbOf(still, alike), rgbOf(moved, alike), maskOf(still), 4, -2);
+    // Pixels lie elsewhere between probes of cells of 4 pixels, whose light is no noise.
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_LT(flicker.relativeRmse[c], (spacing == 1 ? 0.5 : 1.0) * alone.relativeRmse[c]) << spacing;
   }
 }
 
 // As a cut: the first frame of a sequence, and one of another size of cells, are as if there were no history.
 TEST_F(Motion, CutsStartAnew) {
-  const Capture c = ball();
-  const Image alone = rgbOf(c, settings(2));
-  ReplaySequence sequence(device());
-  EXPECT_EQ(rgb(sequence.run(c, {skin()}, accumulated(2))).data, alone.data);
-  EXPECT_NE(rgb(sequence.run(c, {skin()}, accumulated(2))).data, alone.data);
-  ReplaySequence other(device());
-  EXPECT_EQ(rgb(other.run(c, {skin()}, accumulated(2))).data, alone.data);
+  const Capture& c = ball();
+  const Image alone = rgbOf(c, gathering(8, 2));
+  Sequence sequence;
+  EXPECT_EQ(next(sequence, c, accumulated(2)).data, alone.data);
+  EXPECT_NE(next(sequence, c, accumulated(2)).data, alone.data);
+  EXPECT_EQ(next(sequence, c, accumulated(4)).data, rgbOf(c, gathering(8, 4)).data);
 }
 
-// Light that goes down or up by four times is there within an eighth after a frame, and after 24 within the samples' own error.
+// Light that goes down or up by four times is there within an eighth after a frame.
 TEST_F(Motion, LightThatChangesDoesNotLinger) {
-  const Capture lit = ball();
+  const Capture& lit = ball();
   Capture dark = lit;
   dark.lights[0].intensity = 0.25;
   for (const bool comes : {false, true}) {
     const Capture &before = comes ? dark : lit, &after = comes ? lit : dark;
-    ReplaySettings many = settings();
-    many.translucency.gatherSamples = 64;
-    const Image expected = rgbOf(after, many);
-    ReplaySequence sequence(device());
-    for (int i = 0; i < 10; ++i) sequence.run(before, {skin()}, accumulated());
-    Image now;
-    for (int i = 0; i < 24; ++i) {
-      now = rgb(sequence.run(after, {skin()}, accumulated()));
-      EXPECT_TRUE(i > 0 || rmse(lit, now, expected) < 0.12) << comes << ": " << rmse(lit, now, expected);
-    }
-    EXPECT_LT(rmse(lit, now, expected), 0.035) << comes;
+    const Image expected = rgbOf(after, gathering(64));
+    Sequence sequence;
+    for (int i = 0; i < 6; ++i) sequence.run(before, skin(), accumulated());
+    EXPECT_LT(rmse(lit, next(sequence, after, accumulated()), expected), 0.12) << comes;
+    for (int i = 0; i < 6; ++i) sequence.run(after, skin(), accumulated());
+    EXPECT_LT(rmse(lit, next(sequence, after, accumulated()), expected), 0.05) << comes;
   }
 }
 
 // Kept light has the exposure of its frame.
 TEST_F(Motion, ExposureMayChange) {
-  const Capture c = ball();
-  ReplaySequence sequence(device()), exposed(device());
-  for (int i = 0; i < 4; ++i) {
+  const Capture& c = ball();
+  Sequence sequence, exposed;
+  for (int i = 0; i < 3; ++i) {
     ReplaySettings s = accumulated();
-    const Image expected = rgb(sequence.run(c, {skin()}, s));
-    s.preExposure = static_cast<float>(1 << i);
-    Image out = rgb(exposed.run(c, {skin()}, s));
+    const Image expected = next(sequence, c, s);
+    s.preExposure = static_cast<float>(1 << 2 * i);
+    Image out = next(exposed, c, s);
     for (float& v : out.data) v /= s.preExposure;
     EXPECT_LT(rmse(c, out, expected), 2e-3) << i;
   }
@@ -238,17 +196,17 @@ TEST_F(Motion, ExposureMayChange) {
 
 // Motion that is no number keeps nothing.
 TEST_F(Motion, BadMotionIsNone) {
-  const Capture c = ball();
-  Capture bad = c;
-  bad.motion = Image(c.width, c.height, 4);
+  Capture bad = ball();
+  bad.motion = Image(bad.width, bad.height, 4);
   for (std::size_t i = 0; i < bad.motion.data.size(); ++i)
     bad.motion.data[i] = i % 3 == 0   ? std::nanf("")
                          : i % 3 == 1 ? INFINITY
                                       : -1e30f;
-  ReplaySequence sequence(device());
-  for (int i = 0; i < 3; ++i) {
-    const Image out = rgb(sequence.run(bad, {skin()}, accumulated()));
-    EXPECT_LT(rmse(c, out, rgbOf(c, settings())), 0.05);
+  const Image expected = rgbOf(ball(), gathering(8));
+  Sequence sequence;
+  for (int i = 0; i < 2; ++i) {
+    const Image out = next(sequence, bad, accumulated());
+    EXPECT_LT(rmse(bad, out, expected), 0.05);
     for (const float v : out.data) ASSERT_TRUE(std::isfinite(v));
   }
 }

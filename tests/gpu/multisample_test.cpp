@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdio>
 
-#include "capture/material.h"
 #include "common/barrier.h"
 #include "common/push_layout.h"
 #include "gpu_fixture.h"
@@ -215,10 +214,7 @@ TEST_F(Multisample, ThePixelIsItsMostFrequentMaterial) {
 // samples or one sample, edges err by five times as much and more.
 TEST_F(Multisample, EdgesAreNearThoseOfFourPixels) {
   const Capture &c = large(), small = resolved();
-  const auto rendered = [&](const Capture& capture) {
-    return replayer().run(capture, compileMaterials(capture), inFloats()).output;
-  };
-  const Image four = rendered(c), result = rendered(small);
+  const Image four = replay(c, inFloats()), result = replay(small, inFloats());
   double edge = 0, all = 0, edgeSquares = 0, squares = 0, halo = 0;
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {

@@ -85,7 +85,7 @@ TEST_F(Raster, EdgesOfClosedBodiesAreNotOpen) {
   addCube(model, 1);
   for (std::size_t i = 24; i < 48; ++i) model.vertices[i].position[0] -= 2;
   endPart(model, 1);
-  for (const int size : {64, 100, 128, 256}) {
+  for (const int size : {64, 100}) {
     for (const PellucidDepthEncoding encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
       const RasterOptions options{.width = size, .height = size, .depthEncoding = encoding};
       const RasterResult result = rasterize(model, frameModel(model, {0, 0, 1}, 0.5, 1, false), options);
@@ -116,7 +116,7 @@ TEST_F(Raster, SphereHasExactThickness) {
   endPart(model, 0);
   for (const bool orthographic : {false, true}) {
     RasterOptions options;
-    options.width = options.height = 200;
+    options.width = options.height = 100;
     const RasterResult result = rasterize(model, frontCamera(orthographic), options);
     const Capture& c = result.capture;
     EXPECT_EQ(result.openPixels, 0u);
@@ -136,9 +136,8 @@ TEST_F(Raster, SphereHasExactThickness) {
         worst = std::max(worst, std::abs((back - front) / exact - 1));
         ++compared;
       }
-    EXPECT_GT(compared, 15000);
+    EXPECT_GT(compared, 3700);
     EXPECT_LT(worst, 16 * 3.8e-5) << (orthographic ? "orthographic" : "perspective");
-    RecordProperty(orthographic ? "orthographic" : "perspective", std::to_string(worst));
   }
 }
 
@@ -239,7 +238,7 @@ TEST_F(Raster, IrradianceIsLambert) {
   spot.outerConeAngle = 0.12;
   spot.range = 200;
 
-  const RasterOptions options{.width = 128, .height = 128};
+  const RasterOptions options{.width = 64, .height = 64, .shadowSize = 512};
   for (const Light& light : {sun, point, spot}) {
     model.lights = {light};
     const Capture c = rasterize(model, frontCamera(false), options).capture;
@@ -326,7 +325,7 @@ TEST_F(Raster, ShadowMapsKnowWhatCastsAndWhereItEnds) {
   spot.outerConeAngle = 0.5;
   RasterOptions options{.width = 16, .height = 16, .shadowSize = 64};
   for (const Light& light : {directional({0, 0, -1}), spot})
-    for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
+    for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_DISTANCE}) {
       SCOPED_TRACE(testing::Message() << "light " << light.type << ", encoding " << encoding);
       options.shadowEncoding = encoding;
       model.lights = {light};

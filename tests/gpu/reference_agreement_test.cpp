@@ -1,7 +1,6 @@
 // The GPU passes against the float64 reference, which shares no code with them.
 #include "gpu_fixture.h"
 
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <map>
@@ -121,21 +120,15 @@ protected:
   }
 };
 
-TEST_P(Agreement, CameraThickness) {
+TEST_P(Agreement, ThicknessTransmittanceOcclusionAndLight) {
+  const double outliers = GetParam().outliers;
   // Float depths near 100 mm carry 4e-6 mm; the thinnest parts are some tenths of a mm.
   compare(PELLUCID_DEBUG_THICKNESS, 1, 3, 1, 0, 1e-5, 0);
-}
-
-TEST_P(Agreement, Transmittance) {
-  for (const auto source : {0, 1})
-    compare(PELLUCID_DEBUG_TRANSMITTANCE, source, 3, 3, 1, 2e-4, GetParam().outliers);
-}
-
-TEST_P(Agreement, Occlusion) { compare(PELLUCID_DEBUG_OCCLUSION, 1, 3, 3, 1, 1e-4, 2 * GetParam().outliers); }
-
-TEST_P(Agreement, TranslucencyFrame) {
-  for (const auto source : {0, 1})
-    compare(PELLUCID_DEBUG_NONE, source, PELLUCID_FEATURE_TRANSLUCENCY, 3, 1, 1e-3, GetParam().outliers);
+  compare(PELLUCID_DEBUG_OCCLUSION, 1, 3, 3, 1, 1e-4, 2 * outliers);
+  for (const bool source : {false, true}) {
+    compare(PELLUCID_DEBUG_TRANSMITTANCE, source, 3, 3, 1, 2e-4, outliers);
+    compare(PELLUCID_DEBUG_NONE, source, PELLUCID_FEATURE_TRANSLUCENCY, 3, 1, 1e-3, outliers);
+  }
 }
 
 // Tilted about the horizontal axis: a texel boundary takes a whole row of the 80 with it.
@@ -150,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                                                PELLUCID_DEPTH_DEVICE, PELLUCID_LIGHT_DIRECTIONAL},
                                          Scene{"slab", true, false, false, PELLUCID_DEPTH_DEVICE,
                                                PELLUCID_DEPTH_DISTANCE, PELLUCID_LIGHT_SPOT},
-                                         Scene{"torus"}, Scene{"two_sheets"}, Scene{"ear"}, Scene{"blades"},
-                                         Scene{"hollow_sphere"}, Scene{"noise"}, kTiltedRows),
+                                         Scene{"two_sheets"}, Scene{"ear"}, Scene{"hollow_sphere"},
+                                         Scene{"noise"}, kTiltedRows),
                          [](const auto& test) { return test.param.name + std::to_string(test.index); });
 
 // Every option of the thesis, on the scene where all of it shows.
@@ -252,7 +245,7 @@ TEST_F(GpuTest, ShearedCamerasDiffuseAsStraightOnes) {
     ReplaySettings s = diffusionOnly();
     s.outputFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
     const Image gpu = replayer().run(c, materials, s).output;
-    const std::vector<std::uint8_t> pixels = sampled(c, 3);
+    const std::vector<std::uint8_t> pixels = sampled(c, 5);
     const Image ref = diffusionTruth(c, materials, pixels);
     double square = 0, of = 0;
     for (size_t i = 0; i < c.material.size(); ++i) {
@@ -264,8 +257,6 @@ TEST_F(GpuTest, ShearedCamerasDiffuseAsStraightOnes) {
     }
     error[sheared] = std::sqrt(square / of);
   }
-  RecordProperty("straight", std::to_string(error[0]));
-  RecordProperty("sheared", std::to_string(error[1]));
   // Pixels lie elsewhere on the body. Without the rays' angle in the tangent planes' weights the sheared
   // camera errs by 2.4 times as much.
   EXPECT_LT(error[1], 1.15 * error[0]);
@@ -378,8 +369,6 @@ TEST_F(GpuTest, DiffusionDistanceToBruteForce) {
     const Image truth = diffusionTruth(c, materials, pixels);
     const Image gpu = rgb(replayer().run(c, materials, diffusionOnly()).output);
     const Comparison d = compareImages(gpu, truth, pixels);
-    std::printf("%-10s relative RMSE %.4f %.4f %.4f\n", name, d.channels[0].relativeRmse,
-                d.channels[1].relativeRmse, d.channels[2].relativeRmse);
     for (const ChannelDifference& k : d.channels) EXPECT_LT(k.relativeRmse, limit) << name;
   }
 }
@@ -396,15 +385,9 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
   };
   for (const auto& [tilt, dx, dy, limit] : {Row{0, 1, 0, 0.0153},
                                             {18, 0, 1, 0.0148},
-                                            {18, 1, -1, 0.0169},
-                                            {26, 1, 0, 0.0154},
-                                            {34, 1, 0, 0.0190},
                                             {34, 1, 1, 0.0195},
-                                            {36, 1, 0, 0.0204},
                                             {46, 1, -1, 0.0263},
                                             {60, 1, 0, 0.0553},
-                                            {60, 0, 1, 0.0585},
-                                            {60, 1, 1, 0.0393},
                                             {60, -1, 1, 0.0393}}) {
     const double cosine = std::cos(glm::radians(tilt)), sine = std::sin(glm::radians(tilt));
     Capture c = flatCapture(kSize, kSize);
@@ -433,8 +416,6 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
       }
     const Image truth = diffusionTruth(c, {m}, middle);
     const Comparison d = compareImages(rgb(replayer().run(c, {m}, diffusionOnly()).output), truth, middle);
-    std::printf("%g degrees, %d %d: %.4f %.4f %.4f\n", tilt, dx, dy, d.channels[0].relativeRmse,
-                d.channels[1].relativeRmse, d.channels[2].relativeRmse);
     for (const ChannelDifference& k : d.channels)
       EXPECT_LT(k.relativeRmse, limit) << tilt << " degrees, " << dx << " " << dy;
   }

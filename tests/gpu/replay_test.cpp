@@ -37,8 +37,7 @@ TEST_P(Sizes, ConstantIrradianceStays) {
 // Blocks, groups and quads that the image cuts.
 INSTANTIATE_TEST_SUITE_P(Replay, Sizes,
                          testing::Values(std::pair(1, 1), std::pair(3, 5), std::pair(64, 64),
-                                         std::pair(121, 17), std::pair(244, 50), std::pair(500, 33),
-                                         std::pair(641, 361)));
+                                         std::pair(121, 17), std::pair(244, 150)));
 
 TEST_F(Replay, SlabTransmitsTOfItsThickness) {
   Capture c = flatCapture(16, 16, 2);
@@ -86,7 +85,7 @@ TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
     c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
     c.lights[0].shadowMaps[0].clipFromWorld[12] = 5;  // the receiver is at ndc x = 5
     expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
-    for (const float nothing : {pellucid::harness::kNoDepth, 0.0f, -1.0f, kNan, INFINITY}) {
+    for (const float nothing : {0.0f, kNan, INFINITY}) {
       c.lights[0].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z)};
       for (float& v : c.lights[0].shadowMaps[0].depth.image.data) v = nothing;
       expectPixel(replay(c, testMaterial(), s), 4, 4, 1, 0.5, 0.25, kConstant);
@@ -109,16 +108,13 @@ TEST_F(Replay, LightsAddUp) {
   Capture c = flatCapture(8, 8, 2);
   ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
   const double through = 6 * std::exp(-1.0);  // of one light, red
-  for (const int mapped : {0, 1, 4, 19}) {
-    for (const int lights : {1, 8, 64}) {
-      if (mapped > lights) continue;
-      c.lights.assign(static_cast<size_t>(lights), backLight());
-      for (int i = 0; i < mapped; ++i)
-        c.lights[static_cast<size_t>(i)].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
-      const Image out = replay(c, testMaterial(), s);
-      EXPECT_NEAR(out.at(4, 4)[0], 1 + lights * through, 1e-5 * lights * through)
-          << lights << " lights, " << mapped << " maps";
-    }
+  for (const auto& [lights, mapped] : {std::pair(1, 0), {1, 1}, {8, 4}, {64, 19}}) {
+    c.lights.assign(static_cast<size_t>(lights), backLight());
+    for (int i = 0; i < mapped; ++i)
+      c.lights[static_cast<size_t>(i)].shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
+    const Image out = replay(c, testMaterial(), s);
+    EXPECT_NEAR(out.at(4, 4)[0], 1 + lights * through, 1e-5 * lights * through)
+        << lights << " lights, " << mapped << " maps";
   }
 }
 
@@ -167,14 +163,10 @@ TEST_F(Replay, TimedFramesChangeNothing) {
     for (const DispatchTime& time : timed.times) EXPECT_GT(time.microseconds, 0) << time.name;
   }
   const FrameRun frame(device(), replayer().contextFor(c), c, {testMaterial()}, aliased);
-  const auto record = [&] {
-    device().run([&](VkCommandBuffer commandBuffer) { frame.record(commandBuffer); });
-    return frame.output();
-  };
-  const Image first = record();
-  EXPECT_FALSE(sameBits(record(), first)) << "an output in place is the next input";
+  const Image first = record(frame);
+  EXPECT_FALSE(sameBits(record(frame), first)) << "an output in place is the next input";
   frame.restoreIrradiance(c);
-  EXPECT_TRUE(sameBits(record(), first));
+  EXPECT_TRUE(sameBits(record(frame), first));
 }
 
 TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
@@ -187,26 +179,6 @@ TEST_F(Replay, ContextKeepsWhatTheModuleSays) {
             PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_TRUE(
       context.message().ends_with("constants needs a buffer and an offset that is a multiple of 256"));
-}
-
-// A plan knows images by their places in the frame, where another frame may have none.
-TEST_F(Replay, FramesWithoutAnImageOfThePlanAreRefused) {
-  const Capture capture = flatCapture(8, 8);
-  const Context& context = replayer().contextFor(capture);
-  const FrameRun run(device(), context, capture, {testMaterial()}, {});
-  const auto unused = reinterpret_cast<VkCommandBuffer>(uintptr_t{1});
-  const PellucidConstantsSlice constants{reinterpret_cast<VkBuffer>(uintptr_t{1}), 0, 0, nullptr};
-  PellucidFrame lacking = run.frame();
-  for (PellucidImage& image : lacking.transients) image = {};
-  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &lacking, &constants),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_NE(context.message().find("] has no view, but the plan binds it"), std::string::npos)
-      << context.message();
-  PellucidFrame blind = run.frame();
-  blind.output = {};
-  EXPECT_EQ(pellucidRecordPlan(context.handle(), unused, &run.plan(), &blind, &constants),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_TRUE(context.message().ends_with("output has no view, but the plan binds it")) << context.message();
 }
 
 TEST_F(Replay, MaterialBeyondTheListIsNone) {
@@ -300,7 +272,7 @@ TEST_F(Replay, DepthsThatAreNoneAreNothingThere) {
       const Image expected = at(device ? 0.0f : -1.0f);
       for (const float v : expected.data) ASSERT_TRUE(std::isfinite(v) && v >= 0);
       // The smallest depths are nearer to 0 than any distance is far.
-      for (const float depth : {INFINITY, -INFINITY, kNan, -2.0f, device ? 1e-40f : 2e9f, device ? 1e-12f : 1e38f})
+      for (const float depth : {-INFINITY, kNan, device ? 1e-40f : 2e9f})
         EXPECT_TRUE(sameBits(at(depth), expected)) << depth << ", device " << device << ", samples " << samples;
     }
   }
@@ -309,53 +281,48 @@ TEST_F(Replay, DepthsThatAreNoneAreNothingThere) {
 // A light that turns: frames that refresh are as without reuse, frames between them are their own irradiance
 // plus the light that came through at the last refresh.
 TEST_F(Replay, ReuseOverATurningLight) {
-  constexpr int kFrames = 8;
-  const Context& context = replayer().contextFor(Capture{});
-  for (const auto reuse : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
-    for (const int maps : {1, 9}) {  // one fused dispatch, and two
-      ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
-      s.reuse = reuse;
-      ReplaySettings plain = s;
-      plain.reuse = PELLUCID_REUSE_NONE;
-      std::unique_ptr<FrameRun> last;
-      Image kept, keptIrradiance;  // of the last refresh
-      int refreshed = 0;
-      for (int i = 0; i < kFrames; ++i) {
-        Capture c = flatCapture(24, 16, 2);
-        for (size_t p = 0; p < c.irradiance.data.size(); ++p)
-          c.irradiance.data[p] += 0.1f * static_cast<float>(i);
-        // What was outside of the material at a refresh may be inside of it later.
-        for (size_t p = 0; p < c.material.size(); ++p) c.material[p] = static_cast<int>(p % 24) < 10 + i;
-        const double angle = 0.2 + 0.02 * i;
-        for (int k = 0; k < maps; ++k) {
-          Light light = backLight();
-          light.direction = {std::sin(angle), 0, std::cos(angle)};
-          light.intensity = 1;
-          light.shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
-          c.lights.push_back(light);
-        }
-        auto run =
-            std::make_unique<FrameRun>(device(), context, c, std::vector{testMaterial()}, s, last.get());
-        device().run([&](VkCommandBuffer commands) { run->record(commands); });
-        const Image out = run->output(), own = replay(c, testMaterial(), plain);
-        if (run->plan().historyAge == 0) {
-          kept = own;
-          keptIrradiance = c.irradiance;
-          ++refreshed;
-        }
-        for (size_t p = 0; p < out.data.size(); ++p) {
-          const size_t e = p / 4 * 3 + p % 4;
-          if (p % 4 == 3 || c.material[p / 4] == 0) continue;
-          const bool seen = kept.data[p] != keptIrradiance.data[e];  // was material at the refresh
-          const float through = seen ? kept.data[p] - keptIrradiance.data[e] : 0;
-          ASSERT_NEAR(out.data[p], c.irradiance.data[e] + through, 1e-5) << "frame " << i;
-        }
-        last = std::move(run);
+  constexpr int kFrames = 6;
+  // One fused dispatch, and two.
+  for (const auto& [reuse, maps] : {std::pair(PELLUCID_REUSE_ALTERNATE, 9), {PELLUCID_REUSE_COHERENCE, 1}}) {
+    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
+    s.reuse = reuse;
+    ReplaySettings plain = s;
+    plain.reuse = PELLUCID_REUSE_NONE;
+    Sequence sequence;
+    Image kept, keptIrradiance;  // of the last refresh
+    int refreshed = 0;
+    for (int i = 0; i < kFrames; ++i) {
+      Capture c = flatCapture(24, 16, 2);
+      for (size_t p = 0; p < c.irradiance.data.size(); ++p)
+        c.irradiance.data[p] += 0.1f * static_cast<float>(i);
+      // What was outside of the material at a refresh may be inside of it later.
+      for (size_t p = 0; p < c.material.size(); ++p) c.material[p] = static_cast<int>(p % 24) < 10 + i;
+      const double angle = 0.2 + 0.02 * i;
+      for (int k = 0; k < maps; ++k) {
+        Light light = backLight();
+        light.direction = {std::sin(angle), 0, std::cos(angle)};
+        light.intensity = 1;
+        light.shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
+        c.lights.push_back(light);
       }
-      EXPECT_GT(refreshed, 1);
-      EXPECT_LT(refreshed, kFrames);
-      EXPECT_TRUE(reuse != PELLUCID_REUSE_ALTERNATE || refreshed == kFrames / 2) << refreshed;
+      const Image out = sequence.run(c, testMaterial(), s), own = replay(c, testMaterial(), plain);
+      if (sequence.last->plan().historyAge == 0) {
+        kept = own;
+        keptIrradiance = c.irradiance;
+        ++refreshed;
+      }
+      for (size_t p = 0; p < out.data.size(); ++p) {
+        const size_t e = p / 4 * 3 + p % 4;
+        if (p % 4 == 3 || c.material[p / 4] == 0) continue;
+        const bool seen = kept.data[p] != keptIrradiance.data[e];  // was material at the refresh
+        const float through = seen ? kept.data[p] - keptIrradiance.data[e] : 0;
+        ASSERT_NEAR(out.data[p], c.irradiance.data[e] + through, 1e-5) << "frame " << i;
+      }
     }
+    EXPECT_GT(refreshed, 1);
+    EXPECT_LT(refreshed, kFrames);
+    EXPECT_TRUE(reuse != PELLUCID_REUSE_ALTERNATE || refreshed == kFrames / 2) << refreshed;
+  }
 }
 
 }  // namespace

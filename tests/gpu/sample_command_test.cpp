@@ -36,7 +36,6 @@ TEST_F(SampleCommand, NamesWhatIsWrong) {
   expect(2, "--queue copy --headless", "--queue: copy not in");
   expect(2, "--mistake typo --headless", "--mistake");
   expect(4, "--device nothing-like-it --cell 20 --headless", "nothing-like-it");
-  expect(3, kSmall + "--headless -o " + path("none/a.png"), "cannot be written");
 }
 
 TEST_F(SampleCommand, WindowOfAVirtualDisplay) {

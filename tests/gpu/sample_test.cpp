@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "capture/material.h"
-#include "common/compare.h"
 #include "gpu_fixture.h"
 #include "sample/renderer.h"
 
@@ -13,8 +11,8 @@ namespace {
 using namespace pellucid::test;
 using namespace pellucid::sample;
 
-constexpr int kMapTexels = 256;
-constexpr std::uint32_t kSide = 96;
+constexpr int kMapTexels = 128;
+constexpr std::uint32_t kSide = 64;
 
 class Sample : public GpuTest {
 protected:
@@ -32,7 +30,7 @@ protected:
     EXPECT_EQ(device().validationMessages(), std::vector<std::string>());
   }
   static const Scene& scene() {
-    static const Scene shared = headScene(5, kMapTexels);
+    static const Scene shared = headScene(8, kMapTexels);
     return shared;
   }
   static Renderer& renderer() {
@@ -60,17 +58,6 @@ double mean(const Image& image) {
   return std::accumulate(image.data.begin(), image.data.end(), 0.0) / static_cast<double>(image.data.size());
 }
 
-// RMS of the difference over the RMS of `truth`.
-double relativeError(const Image& image, const Image& truth) {
-  double difference = 0, square = 0;
-  for (std::size_t i = 0; i < truth.data.size(); ++i) {
-    const double a = static_cast<double>(image.data[i]), b = static_cast<double>(truth.data[i]);
-    difference += (a - b) * (a - b);
-    square += b * b;
-  }
-  return std::sqrt(difference / square);
-}
-
 TEST_F(Sample, EachFeatureOnAndOff) {
   const Image all = drawn(still());
   EXPECT_GT(mean(all), 0.05);
@@ -81,7 +68,7 @@ TEST_F(Sample, EachFeatureOnAndOff) {
     const Image without = drawn(settings);
     EXPECT_TRUE(
         std::all_of(without.data.begin(), without.data.end(), [](float v) { return v >= 0 && v < 100; }));
-    EXPECT_GT(relativeError(without, all), 0.02);
+    EXPECT_GT(relativeRmse(without, all), 0.02);
     EXPECT_LT(mean(without), mean(all));
   }
   EXPECT_TRUE(sameBits(drawn(still()), all)) << "nothing of other frames stays";
@@ -101,8 +88,8 @@ TEST_F(Sample, WithoutPellucidTheColorIsAlbedoTimesIrradiance) {
     for (std::size_t c = 0; capture.material[i] != 0 && c < 3; ++c, ++covered)
       ASSERT_NEAR(without.data[3 * i + c], capture.albedo.data[3 * i + c] * irradiance.data[3 * i + c],
                   0.01 * without.data[3 * i + c] + 1e-4);  // 0.7 % of llvmpipe's sRGB decoding
-  EXPECT_GT(covered, 3000);
-  EXPECT_GT(relativeError(with, without), 0.05);
+  EXPECT_GT(covered, 1500);
+  EXPECT_GT(relativeRmse(with, without), 0.05);
 }
 
 // Jitter, a rect at the images' corner and exposure included. The replay lacks the rest of the images, and
@@ -113,20 +100,14 @@ TEST_F(Sample, CapturesReplayToTheSamePicture) {
   settings.cullFronts = true;
   for (const double scale : {1.0, 0.6}) {
     settings.scale = scale;
-    for (int frame = 0; frame < 3; ++frame) renderer().draw(settings, camera());
+    for (int frame = 0; frame < 2; ++frame) renderer().draw(settings, camera());
     const Capture capture = renderer().capture();
-    EXPECT_EQ(capture.width, scale < 1 ? 58 : 96);
+    EXPECT_EQ(capture.width, scale < 1 ? 38 : 64);
     ReplaySettings replayed;
     replayed.ambient = true;
     replayed.translucency.gatherSamples = settings.gatherSamples;
-    const Image output = rgb(replayer().run(capture, compileMaterials(capture), replayed).output);
-    Image covered(capture.width, capture.height, 3), truth = covered;
-    for (std::size_t i = 0; i < output.data.size(); ++i)
-      if (capture.material[i / 3] != 0) {
-        covered.data[i] = output.data[i];
-        truth.data[i] = capture.truth->image.data[i];
-      }
-    EXPECT_LT(relativeError(covered, truth), 0.005) << scale;
+    const Image output = replay(capture, replayed), &truth = capture.truth->image;
+    EXPECT_LT(relativeRmse(output, truth, capture.material), 0.005) << scale;
     EXPECT_GT(mean(truth), 0.02);
   }
 }
@@ -137,7 +118,6 @@ TEST_F(Sample, FramesInFlightKeepTheirConstants) {
   other.sun = other.ambient = false;
   other.scale = 0.5;
   renderer().picture();  // the device is idle
-  renderer().draw(other, camera());
   renderer().draw(other, camera());
   renderer().draw(still(), camera());  // the first may still run
   EXPECT_TRUE(sameBits(renderer().color(), alone));
@@ -151,11 +131,8 @@ TEST_F(Sample, FramesInFlightKeepTheirConstants) {
 TEST_F(Sample, AQueueOfItsOwnGivesTheSamePicture) {
   const Image color = drawn(still()), picture = renderer().picture().download();
   Settings settings;
-  for (const auto& [own, pellucid, scale] : {std::tuple(true, true, 1.0),
-                                             {true, true, 0.7},
-                                             {false, true, 1.0},
-                                             {true, false, 1.0},
-                                             {true, true, 1.0}}) {
+  for (const auto& [own, pellucid, scale] :
+       {std::tuple(true, true, 1.0), {false, true, 0.7}, {true, false, 1.0}}) {
     settings.ownQueue = own;
     settings.pellucid = pellucid;
     settings.scale = scale;
@@ -174,7 +151,7 @@ TEST_F(Sample, ARectIsAsAnImageOfItsSize) {
   const Image rect = drawn(settings);
   Renderer small(device(), scene(), {kSide / 2, kSide / 2}, kMapTexels);
   small.draw(still(), camera());
-  EXPECT_LT(relativeError(rect, small.color()), 0.01);
+  EXPECT_LT(relativeRmse(rect, small.color()), 0.01);
 }
 
 // Still pictures become sharper; the mean stays.
@@ -183,12 +160,12 @@ TEST_F(Sample, AntialiasingKeepsTheMean) {
   settings.pellucid = false;
   const auto picture = [&](bool taa) {
     settings.taa = taa;
-    for (int frame = 0; frame < 9; ++frame) renderer().draw(settings, camera());
+    for (int frame = 0; frame < 5; ++frame) renderer().draw(settings, camera());
     return rgb(renderer().picture().download());
   };
   const Image jagged = picture(false), smooth = picture(true);
   EXPECT_NEAR(mean(smooth) / mean(jagged), 1, 0.01);
-  const double difference = relativeError(smooth, jagged);
+  const double difference = relativeRmse(smooth, jagged);
   EXPECT_GT(difference, 0.005);
   EXPECT_LT(difference, 0.1);
 }
@@ -223,12 +200,12 @@ TEST_F(SpotMaps, CulledFrontsAndBiasGiveThePlainPictureWhereTheyAreSaid) {
     EXPECT_GT(mean(skin(settings)) / mean(truth), 3) << samples;
     settings = plain();
     settings.gatherSamples = samples;
-    settings.biasConstant = Settings().biasConstant;
-    settings.biasSlope = Settings().biasSlope;
+    settings.biasConstant = 2 * Settings().biasConstant;
+    settings.biasSlope = 2 * Settings().biasSlope;
     const Image said = skin(settings);
     EXPECT_NEAR(mean(said) / mean(truth), 1, 0.04) << samples;
     settings.mistake = Mistake::Bias;
-    EXPECT_GT(relativeError(skin(settings), truth), 1.25 * relativeError(said, truth)) << samples;
+    EXPECT_GT(relativeRmse(skin(settings), truth), 1.25 * relativeRmse(said, truth)) << samples;
   }
 }
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <iterator>
 
-#include "capture/material.h"
 #include "capture/read.h"
 #include "common/compare.h"
 #include "gltf/gltf.h"
@@ -22,11 +21,15 @@ namespace {
 
 using namespace pellucid::test;
 
+// Relative RMSE in R, G and B: of 4x4 averages from path-traced truth, but for allTexels and diffusion.
 struct Expectation {
   const char* name;
-  double all[3];  // relative RMSE R G B of the physical mode, 4x4 averages
-  // Against no translucency. On a sphere thickness along the light ray falls to 0 at the terminator and lets
-  // too much through; blue hardly gets anywhere.
+  double thickness[3];                    // one thickness a pixel
+  double gather[3], unlit[3];             // 16 samples, and these over pixels without light from the front
+  double allTexels[3] = {.03, .03, .03};  // 16 samples from the sum over all texels
+  double diffusion[3] = {0, 0, 0};        // the diffusion alone from brute force; 0: not compared
+  // One thickness a pixel over no translucency. On a sphere thickness along the light ray falls to 0 at the
+  // terminator and lets too much through; blue hardly gets anywhere.
   double ofNone[3] = {1, 1, 1.15};
 };
 
@@ -38,155 +41,120 @@ std::filesystem::path sharedFolder() {
                   : std::filesystem::path(PELLUCID_SOURCE_DIR) / "../shared";
 }
 
-// Of the capture with the parameter's name; skipped where there is none.
-template <class Parameter>
-class CaptureTest : public GpuTest, public testing::WithParamInterface<Parameter> {
+class SharedCapture : public GpuTest, public testing::WithParamInterface<Expectation> {
 protected:
   void SetUp() override {
     GpuTest::SetUp();
-    const std::filesystem::path manifest =
-        sharedFolder() / "captures" / this->GetParam().name / "manifest.json";
+    const std::filesystem::path manifest = sharedFolder() / "captures" / GetParam().name / "manifest.json";
     if (!std::filesystem::exists(manifest)) GTEST_SKIP() << "no capture at " << manifest;
     capture = readCapture(manifest);
     materials = compileMaterials(capture);
   }
+  Image render(uint32_t features, uint32_t samples) const {
+    ReplaySettings s;
+    s.features = features;
+    s.translucency.gatherSamples = samples;
+    return rgb(replayer().run(capture, materials, s).output);
+  }
+  // 2 %: only the device's rounding may differ.
+  static void expectBelow(const Comparison& found, const double (&limits)[3], const char* what,
+                          double margin = 1.02) {
+    for (size_t c = 0; c < 3; ++c)
+      EXPECT_LT(found.channels[c].relativeRmse, limits[c] * margin) << what << " " << c;
+  }
+  Comparison fromTruth(const Image& image, Subset subset = Subset::All) const {
+    return compareImages(image, capture.truth->image,
+                         comparisonMask(capture.material, capture.irradiance, subset), 4);
+  }
+  void compareWithBruteForce(const Image& diffused) const {
+    namespace reference = pellucid::harness::reference;
+    std::vector<glm::dvec3> irradiance;
+    for (size_t i = 0; i < capture.irradiance.pixels(); ++i) {
+      const float* e = &capture.irradiance.data[3 * i];
+      irradiance.emplace_back(e[0], e[1], e[2]);
+    }
+    const reference::SurfaceReader surfaces(capture);
+    const reference::Diffusion diffusion(capture, surfaces, materials, {}, irradiance);
+    // One pixel in 29: all of them take minutes.
+    Image truth(capture.width, capture.height, 3);
+    std::vector<uint8_t> mask(capture.material.size());
+    for (int i = 0; i < capture.width * capture.height; i += 29) {
+      const int x = i % capture.width, y = i / capture.width;
+      if (capture.material[static_cast<size_t>(i)] == 0) continue;
+      mask[static_cast<size_t>(i)] = 1;
+      const glm::dvec3 value = diffusion.at(x, y);
+      for (int k = 0; k < 3; ++k)
+        truth.at(x, y)[k] =
+            static_cast<float>(value[k]) * (capture.albedo.empty() ? 1 : capture.albedo.at(x, y)[k]);
+    }
+    ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 200);
+    expectBelow(compareImages(diffused, truth, mask), GetParam().diffusion, "diffusion");
+  }
 
+  static constexpr uint32_t kBoth = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
   Capture capture;
   std::vector<PellucidMaterial> materials;
 };
 
-using SharedCapture = CaptureTest<Expectation>;
-
-TEST_P(SharedCapture, IsAsNearToTheTruthAsDocumented) {
-  const auto error = [&](uint32_t features) {
-    ReplaySettings s;
-    s.features = features;
-    const Image image = rgb(replayer().run(capture, materials, s).output);
-    return compareImages(image, capture.truth->image,
-                         comparisonMask(capture.material, capture.irradiance, Subset::All), 4)
-        .channels;
-  };
-  const auto whole = error(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
-  const auto without = error(PELLUCID_FEATURE_DIFFUSION);
-  for (size_t c = 0; c < 3; ++c) {
-    // 2 %, here and below: only the device's rounding may differ.
-    EXPECT_LT(whole[c].relativeRmse, GetParam().all[c] * 1.02) << c;
-    EXPECT_LT(whole[c].relativeRmse, without[c].relativeRmse * GetParam().ofNone[c])
+TEST_P(SharedCapture, ErrsAsDocumented) {
+  const Expectation& e = GetParam();
+  const Image diffused = render(PELLUCID_FEATURE_DIFFUSION, 0), gathered = render(kBoth, 16);
+  const Comparison thickness = fromTruth(render(kBoth, 0)), none = fromTruth(diffused);
+  expectBelow(thickness, e.thickness, "one thickness a pixel");
+  for (size_t c = 0; c < 3; ++c)
+    EXPECT_LT(thickness.channels[c].relativeRmse, none.channels[c].relativeRmse * e.ofNone[c])
         << "worse than no translucency in " << c;
-  }
+  expectBelow(fromTruth(gathered), e.gather, "gather");
+  expectBelow(fromTruth(gathered, Subset::Unlit), e.unlit, "gather, unlit");
+  if (e.diffusion[0] > 0) compareWithBruteForce(diffused);
 }
 
-// 16 samples of the gather: relative RMSE R G B of all pixels and of those without light from the front, and
-// of the gather from the sum over all texels.
-struct GatherExpectation {
-  const char* name;
-  double all[3], unlit[3];
-  double ofAllTexels[3] = {.03, .03, .03};
-};
-
-void PrintTo(const GatherExpectation& value, std::ostream* out) { *out << value.name; }
-
-using SharedCaptureGather = CaptureTest<GatherExpectation>;
-
-TEST_P(SharedCaptureGather, IsAsNearToTheTruthAsDocumented) {
-  ReplaySettings s;
-  s.translucency.gatherSamples = 16;
-  const Image image = rgb(replayer().run(capture, materials, s).output);
-  const auto check = [&](Subset subset, const double(&limits)[3]) {
-    const auto mask = comparisonMask(capture.material, capture.irradiance, subset);
-    const auto channels = compareImages(image, capture.truth->image, mask, 4).channels;
-    for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, limits[c] * 1.02) << c;
-  };
-  check(Subset::All, GetParam().all);
-  check(Subset::Unlit, GetParam().unlit);
-}
-
-TEST_P(SharedCaptureGather, IsNearAllTexels) {
+TEST_P(SharedCapture, IsNearAllTexels) {
   capture.albedo = {};
-  ReplaySettings s;
-  s.translucency.gatherSamples = 16;
-  const Image image = rgb(replayer().run(capture, materials, s).output);
-  s.features = PELLUCID_FEATURE_DIFFUSION;
-  const Image diffused = rgb(replayer().run(capture, materials, s).output);
-  // One average in 64: the sum of all takes minutes.
-  const auto wanted = [](int x, int y) { return x / 4 % 8 == 1 && y / 4 % 8 == 1; };
+  const Image image = render(kBoth, 16), diffused = render(PELLUCID_FEATURE_DIFFUSION, 16);
+  // One average in 128: the sum of all takes minutes.
+  const auto wanted = [](int x, int y) { return x / 4 % 16 == 1 && y / 4 % 8 == 1; };
   const Image all = allTexels(capture, materials, diffused, wanted);
   std::vector<uint8_t> some = capture.material;
   for (int y = 0; y < capture.height; ++y)
     for (int x = 0; x < capture.width; ++x)
       if (!wanted(x, y)) some[static_cast<size_t>(y * capture.width + x)] = 0;
-  const auto channels =
-      compareImages(image, all, comparisonMask(some, capture.irradiance, Subset::All), 4).channels;
-  for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, GetParam().ofAllTexels[c]) << c;
+  expectBelow(compareImages(image, all, comparisonMask(some, capture.irradiance, Subset::All), 4),
+              GetParam().allTexels, "all texels", 1);
 }
-
-// Diffusion alone from brute force: relative RMSE R G B of the default.
-struct DiffusionExpectation {
-  const char* name;
-  double all[3];
-};
-
-void PrintTo(const DiffusionExpectation& value, std::ostream* out) { *out << value.name; }
-
-using SharedCaptureDiffusion = CaptureTest<DiffusionExpectation>;
-
-TEST_P(SharedCaptureDiffusion, IsAsNearToBruteForceAsDocumented) {
-  namespace reference = pellucid::harness::reference;
-  std::vector<glm::dvec3> irradiance;
-  for (size_t i = 0; i < capture.irradiance.pixels(); ++i) {
-    const float* e = &capture.irradiance.data[3 * i];
-    irradiance.emplace_back(e[0], e[1], e[2]);
-  }
-  const reference::SurfaceReader surfaces(capture);
-  const reference::Diffusion diffusion(capture, surfaces, materials, {}, irradiance);
-  // One pixel in 29: all of them take minutes.
-  Image truth(capture.width, capture.height, 3);
-  std::vector<uint8_t> mask(capture.material.size());
-  for (int i = 0; i < capture.width * capture.height; i += 29) {
-    const int x = i % capture.width, y = i / capture.width;
-    if (capture.material[static_cast<size_t>(i)] == 0) continue;
-    mask[static_cast<size_t>(i)] = 1;
-    const glm::dvec3 value = diffusion.at(x, y);
-    for (int k = 0; k < 3; ++k)
-      truth.at(x, y)[k] =
-          static_cast<float>(value[k]) * (capture.albedo.empty() ? 1 : capture.albedo.at(x, y)[k]);
-  }
-  ASSERT_GT(std::count(mask.begin(), mask.end(), 1), 200);
-  ReplaySettings s;
-  s.features = PELLUCID_FEATURE_DIFFUSION;
-  const auto channels =
-      compareImages(rgb(replayer().run(capture, materials, s).output), truth, mask).channels;
-  for (size_t c = 0; c < 3; ++c) EXPECT_LT(channels[c].relativeRmse, 1.02 * GetParam().all[c]) << c;
-}
-
-INSTANTIATE_TEST_SUITE_P(Truth, SharedCaptureDiffusion,
-                         testing::Values(DiffusionExpectation{"ear_backlit", {.021, .018, .017}},
-                                         DiffusionExpectation{"head_sidelit", {.017, .009, .0053}},
-                                         DiffusionExpectation{"sphere_backlit", {.0618, .0300, .0258}}),
-                         [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
-    Truth, SharedCaptureGather,
+    Truth, SharedCapture,
     testing::Values(
-        GatherExpectation{"ear_backlit", {.0600, .0354, .0316}, {.188, .112, .1705}},
-        // The unlit green and blue, .006 and .008 more since the diffusion's weights follow the view ray; all
-        // pixels err less.
-        GatherExpectation{"head_sidelit", {.0310, .0232, .0222}, {.2525, .312, .484}},
+        Expectation{"ear_backlit",
+                    {.1770, .1105, .0551},
+                    {.0600, .0354, .0316},
+                    {.188, .112, .1705},
+                    {.03, .03, .03},
+                    {.021, .018, .017}},
+        Expectation{"head_sidelit",
+                    {.0500, .0485, .0412},
+                    {.0310, .0232, .0222},
+                    {.2525, .312, .484},
+                    {.03, .03, .03},
+                    {.017, .009, .0053}},
         // Next to no blue comes through but at the rims, where light enters by the side faces, too.
-        GatherExpectation{"slab_backlit", {.0439, .0809, .311}, {.0439, .0809, .311}, {.03, .03, .11}},
-        // Green and blue, .012 and .008 more since bodies return what a ball does, red less.
-        GatherExpectation{"sphere_backlit", {.0619, .0458, .0536}, {.1185, .1255, .1275}},
+        Expectation{
+            "slab_backlit", {.190, .259, .413}, {.0439, .0809, .311}, {.0439, .0809, .311}, {.03, .03, .11}},
+        Expectation{"sphere_backlit",
+                    {.363, .220, .1340},
+                    {.0619, .0458, .0536},
+                    {.1185, .1255, .1275},
+                    {.03, .03, .03},
+                    {.0618, .0300, .0258},
+                    {1, 1.18, 1.34}},
         // A record is a mean of texels, and the front sheet ends within some.
-        GatherExpectation{"two_sheets", {.0361, .0306, .0646}, {.0361, .0306, .0646}, {.031, .031, .031}}),
+        Expectation{"two_sheets",
+                    {.1484, .159, .214},
+                    {.0361, .0306, .0646},
+                    {.0361, .0306, .0646},
+                    {.031, .031, .031}}),
     [](const auto& test) { return std::string(test.param.name); });
-
-INSTANTIATE_TEST_SUITE_P(Truth, SharedCapture,
-                         testing::Values(Expectation{"ear_backlit", {.1770, .1105, .0551}},
-                                         Expectation{"head_sidelit", {.0500, .0485, .0412}},
-                                         Expectation{"slab_backlit", {.190, .259, .413}},
-                                         Expectation{"sphere_backlit", {.363, .220, .1340}, {1, 1.18, 1.34}},
-                                         Expectation{"two_sheets", {.1484, .159, .214}}),
-                         [](const auto& test) { return std::string(test.param.name); });
 
 // The same head through Blender's Cycles: same mesh, camera and light, another renderer.
 TEST_F(GpuTest, HeadAgreesWithCycles) {

@@ -48,13 +48,13 @@ std::string contents(const StressFrame& f) {
 
 TEST(StressFrames, FollowFromSeedAndIndex) {
   std::set<std::string> different;
-  for (std::uint64_t i = 0; i < 16; ++i) {
+  for (std::uint64_t i = 0; i < 4; ++i) {
     const std::string first = contents(randomFrame(7, i, pool(), small()));
     EXPECT_EQ(first, contents(randomFrame(7, i, pool(), small()))) << i;
     different.insert(first);
     different.insert(contents(randomFrame(8, i, pool(), small())));
   }
-  EXPECT_EQ(different.size(), 32u);
+  EXPECT_EQ(different.size(), 8u);
 }
 
 // What the module says to the frame; no device is needed.
@@ -68,9 +68,9 @@ std::string refusal(const StressFrame& f) {
 TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
   std::map<std::string, int> seen;
   int refused = 0;
-  constexpr int kFrames = 1500;
+  constexpr int kFrames = 500;
   for (std::uint64_t i = 0; i < kFrames; ++i) {
-    const StressFrame f = randomFrame(3, i, pool(), small());
+    const StressFrame f = randomFrame(3, i, pool(), {256, 256});
     const std::string said = refusal(f);
     if (f.wild)
       refused += !said.empty();
@@ -119,7 +119,7 @@ TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
                                              {"left-handed ", 2},
                                              {"bad irradiance ", 2}};
   for (const auto& [what, count] : counts)
-    for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 5) << what << i;
+    for (int i = 0; i < count; ++i) EXPECT_GE(seen[what + std::to_string(i)], 2) << what << i;
 }
 
 // Renders, and damages what comes out.
@@ -209,18 +209,15 @@ TEST_F(Stress, EveryCheckFindsAFault) {
     const StressFrame frame = randomFrame(11, i, pool(), {256, 256});
     if (firstWith(ownedPixels(frame), true) == ownedPixels(frame).size()) continue;
     Damaging& r = renderer();
-    Subject subject(r, frame);
-    for (const Check& check : checks()) {
-      r.damage = nullptr;
-      if (missing.count(check.name) == 0 || !check.run(subject)) continue;
+    for (const Check& check : checks())
       for (const Damage& fault : faultsFor(check.name)) {
+        if (missing.count(check.name) == 0) continue;
         r.count = 0;
         r.damage = fault;
         Subject damaged(r, frame);
         const std::optional<Worst> worst = check.run(damaged);
         if (worst && worst->value > check.tame) missing.erase(check.name);
       }
-    }
   }
   for (const std::string& check : missing) ADD_FAILURE() << check << " has no frame, or finds no fault";
 }
@@ -229,7 +226,7 @@ TEST_F(Stress, FailuresReplayToTheSameBits) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("pellucid_stress_" + std::to_string(::getpid()));
   int compared = 0;
-  for (std::uint64_t i = 0; compared < 4; ++i) {
+  for (std::uint64_t i = 0; compared < 2; ++i) {
     const StressFrame frame = randomFrame(5, i, pool(), small());
     if (!frame.notInCapture.empty() || !refusal(frame).empty()) continue;
     ++compared;
@@ -258,8 +255,8 @@ TEST_F(Stress, FailuresReplayToTheSameBits) {
 TEST_F(Stress, ShortRunHolds) {
   StressOptions options;
   options.seed = 40;
-  options.frames = 10;
-  options.limits = {2048, 2048};
+  options.frames = 4;
+  options.limits = small();
   options.validate = true;
   StressEvents events;
   events.violated = [](const StressFrame& frame, const std::vector<Violation>& violations) {
@@ -269,9 +266,9 @@ TEST_F(Stress, ShortRunHolds) {
                     << " " << v.sentence;
   };
   const StressResult result = runStress(renderer(), options, events);
-  EXPECT_EQ(result.frames, 10u);
+  EXPECT_EQ(result.frames, 4u);
   EXPECT_EQ(result.checks.size(), checks().size() + 2);
-  EXPECT_EQ(result.checks[1].tame.done, 5u);
+  EXPECT_EQ(result.checks[1].tame.done, 2u);
 }
 
 }  // namespace

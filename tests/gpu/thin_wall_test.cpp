@@ -1,7 +1,6 @@
 // Sheets without thickness: closed forms, the float64 reference and path tracing.
 #include <functional>
 
-#include "capture/material.h"
 #include "gpu/model_builder.h"
 #include "gpu_fixture.h"
 #include "raster/raster.h"
@@ -50,20 +49,11 @@ void addSkin(Model& model, const Vector3& center, double radius) {
   endPart(model, 2, static_cast<std::uint32_t>(model.surfaces.size() - 1));
 }
 
-ReplaySettings gathering(uint32_t samples) {
-  ReplaySettings s = inFloats();
-  s.translucency.gatherSamples = samples;
-  return s;
-}
-
 class ThinWall : public GpuTest {
 protected:
   static Capture draw(const Model& model, int shadowSize = 256, PointMaps maps = PointMaps::Auto) {
     const RasterOptions options{.width = 65, .height = 65, .shadowSize = shadowSize, .pointMaps = maps};
     return rasterize(device(), model, frontCamera(true), options).capture;
-  }
-  static Image run(const Capture& c, const ReplaySettings& settings) {
-    return replayer().run(c, compileMaterials(c), settings).output;
   }
 };
 
@@ -93,28 +83,27 @@ void expectPixels(const Capture& c, const Image& output, std::uint8_t material,
   EXPECT_EQ(wrong, 0u);
 }
 
-const Vector3 kBehind[] = {{0, 0, 1}, {1, 0.5, 1}, {-4, 1, 1}};
+const Vector3 kBehind[] = {{0, 0, 1}, {-4, 1, 1}};
 
 double cosineOf(const Vector3& d) { return d[2] / std::hypot(d[0], d[1], d[2]); }
 
 TEST_F(ThinWall, LightFromBehindIsTransmittanceTimesTheIrradianceOfTheOtherFace) {
   for (const int shadowSize : {0, 64})
-    for (const bool skin : {false, true})
-      for (const Vector3& direction : kBehind) {
-        Model model = sheet();
-        if (skin) addSkin(model, {0, 8, 0}, 1.5);
-        model.lights = {directional(direction, kE)};
-        const Capture c = draw(model, shadowSize);
-        for (const std::uint32_t samples : {0u, 8u}) {
-          SCOPED_TRACE(testing::Message() << samples << " samples"
-                                          << ", map " << shadowSize << ", skin " << skin << ", light "
-                                          << direction[0] << " " << direction[1]);
-          // The sphere shadows the edge of the sheet.
-          expectPixels(c, run(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
-            return skin && y > 2 && shadowSize > 0 ? -1 : kTransmittance[k] * kE * cosineOf(direction);
-          });
-        }
+    for (const Vector3& direction : kBehind) {
+      Model model = sheet();
+      addSkin(model, {0, 8, 0}, 1.5);
+      model.lights = {directional(direction, kE)};
+      const Capture c = draw(model, shadowSize);
+      for (const std::uint32_t samples : {0u, 8u}) {
+        SCOPED_TRACE(testing::Message()
+                     << samples << " samples"
+                     << ", map " << shadowSize << ", light " << direction[0] << " " << direction[1]);
+        // The sphere shadows the edge of the sheet.
+        expectPixels(c, replay(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
+          return y > 2 && shadowSize > 0 ? -1 : kTransmittance[k] * kE * cosineOf(direction);
+        });
       }
+    }
 }
 
 TEST_F(ThinWall, LightFromTheFrontIsReflectedAlone) {
@@ -122,8 +111,8 @@ TEST_F(ThinWall, LightFromTheFrontIsReflectedAlone) {
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({0.5, 0, -1}, kE)};
   const Capture c = draw(model);
-  for (const std::uint32_t samples : {0u, 8u, 16u})
-    expectPixels(c, run(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
+  for (const std::uint32_t samples : {0u, 8u})
+    expectPixels(c, replay(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
       return y > 2 ? -1 : kReflectance[k] * kE / std::hypot(0.5, 1);
     });
 }
@@ -134,8 +123,8 @@ TEST_F(ThinWall, WhatStandsBetweenHoldsLightBack) {
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({0, 0, 1}, kE)};
   const Capture c = draw(model, 512);
-  for (const std::uint32_t samples : {0u, 8u, 16u})
-    expectPixels(c, run(c, gathering(samples)), 1, [&](double x, double y, std::size_t k) {
+  for (const std::uint32_t samples : {0u, 8u})
+    expectPixels(c, replay(c, gathering(samples)), 1, [&](double x, double y, std::size_t k) {
       const double off = std::max(std::abs(x), std::abs(y)) - 2;
       // A texel is some .04 mm.
       return std::abs(off) < 0.2 || y > 4 ? -1 : off < 0 ? 0 : kTransmittance[k] * kE;
@@ -152,7 +141,7 @@ TEST_F(ThinWall, WhatLiesBeyondTheSheetHoldsNothingBack) {
   for (const float stored : {0.0f, 0.01f}) {
     std::fill(c.lights[0].shadowMaps[0].depth.image.data.begin(),
               c.lights[0].shadowMaps[0].depth.image.data.end(), stored);
-    expectPixels(c, run(c, gathering(0)), 1, [&](double, double, std::size_t k) {
+    expectPixels(c, replay(c, gathering(0)), 1, [&](double, double, std::size_t k) {
       return kTransmittance[k] * kE * cosineOf({0.3, 0, 1});
     });
   }
@@ -175,7 +164,7 @@ TEST_F(ThinWall, ALanternShinesByTheLightWithin) {
     const Capture c = draw(model, shadowSize, PointMaps::Six);
     // Facets of 64 rings, whose normals are interpolated, lie up to .1 % nearer to the light.
     expectPixels(
-        c, run(c, gathering(8)), 1,
+        c, replay(c, gathering(8)), 1,
         [&](double, double, std::size_t k) { return kTransmittance[k] * 50 / 25; }, 4e-3);
   }
 }
@@ -184,7 +173,7 @@ TEST_F(ThinWall, TheFarWallOfALanternHoldsLightFromOutsideBack) {
   Model model = lantern();
   model.lights = {directional({0, 0, 1}, kE)};
   const Capture c = draw(model);
-  expectPixels(c, run(c, gathering(8)), 1, [&](double x, double y, std::size_t) {
+  expectPixels(c, replay(c, gathering(8)), 1, [&](double x, double y, std::size_t) {
     return std::hypot(x, y) < 4.5 ? 0 : -1;  // the walls meet at the rim
   });
 }
@@ -198,7 +187,7 @@ TEST_F(ThinWall, NormalsThatBendDoNotLightALitFace) {
     c.normal.data[3 * i] = 0.9f;
     c.normal.data[3 * i + 2] = 0.43589f;
   }
-  expectPixels(c, run(c, gathering(0)), 1, [&](double x, double y, std::size_t k) {
+  expectPixels(c, replay(c, gathering(0)), 1, [&](double x, double y, std::size_t k) {
     // Beyond the edge there are no depths to take a normal from.
     const double e = static_cast<double>(c.irradiance.at(32, 32)[k]);
     return std::max(std::abs(x), std::abs(y)) > 4.5 ? -1 : kReflectance[k] * e;
@@ -215,7 +204,7 @@ TEST_F(ThinWall, SolidsOfTheFrameDoNotSeeThatSheetsAreThin) {
   std::vector<PellucidMaterial> opaque = materials;
   opaque[0].thinWalled = 0;
   for (float(&t)[5] : opaque[0].transmittance) t[0] = 1e-9f, t[1] = 1;
-  for (const std::uint32_t samples : {0u, 8u, 16u}) {
+  for (const std::uint32_t samples : {0u, 8u}) {
     const Image with = replayer().run(c, materials, gathering(samples)).output,
                 alone = replayer().run(c, opaque, gathering(samples)).output;
     double worst = 0;
@@ -235,15 +224,13 @@ TEST_F(ThinWall, LightSpreadsWithinASheetIfItsMaterialSaysSo) {
   const Capture still = draw(model, 512);
   Capture spreading = still;
   spreading.materials[0] = ThinWallMaterial{kReflectance, kTransmittance, {{1, 1, 1}}};
-  const auto atEdge = [&](std::uint32_t samples, bool spreads) {
-    const Image output = run(spreads ? spreading : still, gathering(samples));
-    return static_cast<double>(output.at(32 + 5, 32)[0]);  // 1.5 of 2 mm
+  const auto atEdge = [&](const Capture& c, std::uint32_t samples) {
+    return static_cast<double>(replay(c, gathering(samples)).at(32 + 5, 32)[0]);  // 1.5 of 2 mm
   };
-  for (const std::uint32_t samples : {0u, 8u, 16u}) {
-    EXPECT_LT(atEdge(samples, false), 1e-3) << samples;
-    EXPECT_GT(atEdge(samples, true), 0.1) << samples;
-    EXPECT_NEAR(atEdge(samples, true), atEdge(0, true), 0.03) << samples;
-  }
+  const double plain = atEdge(spreading, 0);
+  EXPECT_GT(plain, 0.1);
+  EXPECT_NEAR(atEdge(spreading, 8), plain, 0.03);
+  for (const std::uint32_t samples : {0u, 8u}) EXPECT_LT(atEdge(still, samples), 1e-3) << samples;
 }
 
 // Wherever the passes run, with a gather and without.
@@ -253,17 +240,15 @@ TEST_F(ThinWall, EveryOrderOfDispatchesHasTheSameLight) {
   model.lights = {directional({1, 0.5, 1}, kE)};
   const Capture c = draw(model);
   for (const std::uint32_t spacing : {1u, 4u})
-    for (const auto indirect : {1, 0})
-      for (const std::uint32_t features : {1u, 3u}) {
-        SCOPED_TRACE(testing::Message() << spacing << " " << indirect << " " << features);
-        ReplaySettings settings = gathering(8);
-        settings.translucency.gatherSpacing = spacing;
-        settings.indirectDispatches = indirect;
-        settings.features = features;
-        expectPixels(c, run(c, settings), 1, [&](double, double y, std::size_t k) {
-          return y > 2 ? -1 : kTransmittance[k] * kE * cosineOf({1, 0.5, 1});
-        });
-      }
+    for (const std::uint32_t features : {1u, 3u}) {
+      SCOPED_TRACE(testing::Message() << spacing << " " << features);
+      ReplaySettings settings = gathering(8, spacing);
+      settings.indirectDispatches = (spacing == 1) == (features == 1);
+      settings.features = features;
+      expectPixels(c, replay(c, settings), 1, [&](double, double y, std::size_t k) {
+        return y > 2 ? -1 : kTransmittance[k] * kE * cosineOf({1, 0.5, 1});
+      });
+    }
 }
 
 // ---- The reference and path tracing
@@ -336,7 +321,7 @@ TEST_F(ThinWall, AgreesWithPathTracing) {
   addOccluder(model, 2, -3);
   addSkin(model, {0, 8, 0}, 1.5);
   model.lights = {directional({1, 0.5, 1}, kE), pointLight({3, 0, -20}, 300), directional({0.2, 0, -1}, 0.5)};
-  const Capture c = draw(model, 1024);
+  const Capture c = draw(model, 512);
   const auto scene = reference::makeMeshScene(model);
   const auto media = reference::traceMedia(c.materials, c.name);
   reference::Emitters emitters;
@@ -348,7 +333,7 @@ TEST_F(ThinWall, AgreesWithPathTracing) {
   reference::TruthTracer(c, surface, *scene, media, emitters).trace(sums, 2, 1, 0, [] {});
   const Image truth = reference::truthOf(sums).image;
   for (const std::uint32_t samples : {0u, 8u}) {
-    const Image output = run(c, gathering(samples));
+    const Image output = replay(c, gathering(samples));
     double squares = 0, total = 0;
     std::size_t apart = 0, pixels = 0;
     for (std::size_t i = 0; i < output.pixels(); ++i)

@@ -75,8 +75,7 @@ protected:
     settings.translucency.cameraThickness = 1;
     const Context& context = replayer().contextFor(capture);
     const FrameRun run(device(), context, capture, {testMaterial()}, settings);
-    device().run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
-    const Image fused = run.output();
+    const Image fused = record(run);
     const Image drawn = rasterizeTransmitted(device(), model, capture, run.frame(), run.plan(), options);
     Difference d;
     for (std::size_t i = 0; i < drawn.data.size(); ++i) {
@@ -103,24 +102,23 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
   const ReplaySettings physical;
   const std::pair<const char*, ReplaySettings> kSettings[] = {
       {"physical", physical}, {"thesis", thesisSettings()}, {"cosine", cosine}};
-  for (const auto& [name, settings] : kSettings)
-    for (const bool orthographic : {false, true})
-      for (const bool reversed : {false, true}) {
-        SCOPED_TRACE(std::string(name) + (orthographic ? " orthographic" : "") +
-                     (reversed ? " reversed" : ""));
-        const RasterOptions options{
-            .width = 96,
-            .height = 80,
-            .reversedZ = reversed,
-            .normalsInViewSpace = reversed,
-            .shadowSize = 256,
-            .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
-        const Difference d = difference(orthographic, options, settings);
-        EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
-        EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";
-        EXPECT_GT(d.lit, 300u);
-        EXPECT_GT(d.peak, 0.05);
-      }
+  for (const auto& [name, settings] : kSettings) {
+    SCOPED_TRACE(name);
+    const bool orthographic = settings.translucency.constantViewDirection,
+               reversed = &settings != &kSettings[1].second;
+    const RasterOptions options{
+        .width = 96,
+        .height = 80,
+        .reversedZ = reversed,
+        .normalsInViewSpace = reversed,
+        .shadowSize = 256,
+        .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
+    const Difference d = difference(orthographic, options, settings);
+    EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
+    EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";
+    EXPECT_GT(d.lit, 300u);
+    EXPECT_GT(d.peak, 0.05);
+  }
 }
 
 }  // namespace

