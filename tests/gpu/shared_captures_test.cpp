@@ -74,7 +74,7 @@ protected:
       irradiance.emplace_back(e[0], e[1], e[2]);
     }
     const reference::SurfaceReader surfaces(capture);
-    const reference::Diffusion diffusion(capture, surfaces, materials, {}, irradiance);
+    const reference::Diffusion diffusion(capture, surfaces, materials, irradiance);
     // One pixel in 29: all of them take minutes.
     Image truth(capture.width, capture.height, 3);
     std::vector<uint8_t> mask(capture.material.size());
