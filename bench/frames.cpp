@@ -56,7 +56,7 @@ double measureFloor(Device& device, int width, int height, int repeat) {
     for (float& value : image.data) value = least + (most - least) * static_cast<float>(random()) * 0x1p-32f;
     return image;
   };
-  const Image near = noise(1, 0.5f, 0.6f), far = noise(1, 0.6f, 0.7f), light = noise(3, 0.0f, 4.0f);
+  const Image near = noise(1, 0.5f, 0.6f), far = noise(1, 0.6f, 0.7f), light = noise(3, 0.0f, 2.0f);
   GpuImage front(device, width, height, VK_FORMAT_R32_SFLOAT),
       back(device, width, height, VK_FORMAT_R32_SFLOAT);
   GpuImage irradiance(device, width, height, VK_FORMAT_R16G16B16A16_SFLOAT);

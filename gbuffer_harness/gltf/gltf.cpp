@@ -150,6 +150,7 @@ public:
 
 private:
   void sayIgnored();
+  void checkVertices() const;
   void addMesh(std::size_t node, const glm::dmat4& world);
   void addPrimitive(const tinygltf::Primitive& primitive, const std::string& field, const MeshPose& pose,
                     std::uint32_t object);
@@ -174,6 +175,8 @@ private:
 void Loader::sayIgnored() {
   for (const std::string& name : document_.model.extensionsUsed)
     if (!isDrawn(name)) scene_.warnings.push_back("extension " + name + " is ignored");
+  if (document_.json.contains("animations"))
+    scene_.warnings.push_back("animations are ignored: nodes stand as they do without them");
 }
 
 void Loader::checkPresetNames() {
@@ -250,6 +253,28 @@ std::uint32_t Loader::surfaceOf(Drawn& drawn, bool hasVertexColors) {
                            ", the reflectance of its medium");
   }
   return *index;
+}
+
+// Nodes multiply a small file's meshes: too many vertices are refused before the first one is read.
+void Loader::checkVertices() const {
+  const tinygltf::Model& model = document_.model;
+  std::size_t vertices = 0;
+  for (std::size_t node = 0; node < worldFromNode_.size(); ++node) {
+    const auto mesh = static_cast<std::size_t>(model.nodes[node].mesh);  // -1: none
+    if (!worldFromNode_[node] || mesh >= model.meshes.size()) continue;
+    for (std::size_t i = 0; i < model.meshes[mesh].primitives.size(); ++i) {
+      const auto& attributes = model.meshes[mesh].primitives[i].attributes;
+      const auto position = attributes.find("POSITION");
+      const std::size_t accessor =
+          position == attributes.end() ? model.accessors.size() : static_cast<std::size_t>(position->second);
+      // What is wrong with one accessor alone is said of the accessor.
+      if (accessor < model.accessors.size() && model.accessors[accessor].count <= kMaxVertices)
+        vertices += model.accessors[accessor].count;
+      if (vertices > kMaxVertices)
+        document_.fail("meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(i) + "]",
+                       "with it the scene has more than 2^24 vertices or triangles");
+    }
+  }
 }
 
 void Loader::addMesh(std::size_t node, const glm::dmat4& world) {
@@ -371,6 +396,7 @@ GltfScene Loader::load() {
   worldFromNode_.resize(document_.model.nodes.size());
   const std::vector<PlacedNode> placed = placeNodes(document_);
   for (const auto& [node, world] : placed) worldFromNode_[node] = world;
+  checkVertices();
   for (const auto& [node, world] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];
     if (source.mesh != -1) addMesh(node, world);

@@ -107,8 +107,6 @@ Attributes readAttributes(const GltfDocument& document, const tinygltf::Primitiv
   return attributes;
 }
 
-// Instances multiply a small file's meshes: the bound on what they may become.
-constexpr std::size_t kMaxVertices = 1u << 24;
 constexpr std::size_t kMaxIndices = 3 * kMaxVertices;
 
 // Far beyond any scene, and its square still is a float.

@@ -27,6 +27,9 @@ struct TexCoords {
 // Reads the set and the transform of a texture info in the file's JSON (baseColorTexture and its like).
 TexCoord readTexCoord(const GltfDocument& document, const GltfJson& textureInfo, const std::string& field);
 
+// The most vertices of a scene, whose meshes several nodes may share.
+constexpr std::size_t kMaxVertices = 1u << 24;
+
 // How a mesh stands in the world.
 struct MeshPose {
   glm::dmat4 worldFromMesh{1};
