@@ -76,6 +76,8 @@ def manifest(bpy, file):
             print(f"left out: light {light.name} of type {light.data.type}", file=sys.stderr)
     # A material takes part when it has a pass index; its custom property "pellucid" names the preset.
     materials = [m for m in bpy.data.materials if m.pass_index > 0]
+    if not materials:
+        print("no material has a pass index: nothing in the render is translucent", file=sys.stderr)
     return {"pellucid": 1, "metersPerUnit": scene.unit_settings.scale_length,
             "camera": {"clipFromView": column_major(clip_from_view(projection)),
                        "viewFromWorld": column_major(view_from_world(camera.matrix_world))},

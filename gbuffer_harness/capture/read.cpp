@@ -1,11 +1,9 @@
 #include "capture/read.h"
 
-#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <map>
-#include <set>
 #include <sstream>
 #include <tuple>
 #include <vector>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "capture/capture.h"
 #include "capture/manifest.h"

@@ -142,8 +142,7 @@ std::vector<GivenOption> Command::given() const {
   std::vector<GivenOption> all;
   for (const CLI::Option* option : app_->get_options())
     if (option->count() > 0)
-      all.push_back({option->get_name(), option->get_group(), option->results(), option->get_positional(),
-                     option->get_expected_min() == 0});
+      all.push_back({option->get_name(), option->get_group(), option->get_positional()});
   return all;
 }
 

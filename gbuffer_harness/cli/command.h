@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <functional>
 #include <initializer_list>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -48,8 +47,7 @@ private:
 // An option as the command line has it.
 struct GivenOption {
   std::string name, group;
-  std::vector<std::string> values;
-  bool positional, flag;
+  bool positional;
 };
 
 // The value type of an optional, or T itself.

@@ -1,6 +1,5 @@
 #include "common/compare.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <iomanip>

@@ -43,6 +43,14 @@ std::string errorCells(const std::optional<Comparison>& comparison) {
   return text;
 }
 
+std::string tintCells(const Tint& tint) {
+  if (tint.blocks == 0) return "no such blocks | ";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.3f %.3f %.3f | %.3f", tint.channel[0], tint.channel[1], tint.channel[2],
+                tint.redOverGreen);
+  return text;
+}
+
 void print(const std::vector<Evaluation>& evaluations) {
   std::printf(
       "Relative RMSE and mean bias (R G B) against the truth, %dx%d averages of which half and more are surface; "
@@ -58,10 +66,9 @@ void print(const std::vector<Evaluation>& evaluations) {
       "| capture | model | isolated | spots | tint | red/green | FLIP mean | 99th percentile |\n"
       "|-|-|-|-|-|-|-|-|\n");
   for (const auto& [capture, model, all, unlit, eye] : evaluations) {
-    const auto& tint = eye.tint.channel;
-    std::printf("| %s | %s | %zu (%zu) | %zu | %.3f %.3f %.3f | %.3f | %.3f | %.3f |\n", capture.c_str(),
-                model.c_str(), eye.isolated, eye.isolatedInTruth, eye.spots, tint[0], tint[1], tint[2],
-                eye.tint.redOverGreen, eye.flip.mean, eye.flip.p99);
+    std::printf("| %s | %s | %zu (%zu) | %zu | %s | %.3f | %.3f |\n", capture.c_str(), model.c_str(),
+                eye.isolated, eye.isolatedInTruth, eye.spots, tintCells(eye.tint).c_str(), eye.flip.mean,
+                eye.flip.p99);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
 #include "capture/material.h"
 #include "cli/capture_options.h"
@@ -141,6 +142,7 @@ Object proceduralObject(const Options& options) {
 
 Object modelObject(const Options& options, Device& device) {
   const auto scene = std::make_shared<CaptureModel>(captureModel(options.scene));
+  warn(scene->warnings);
   return {boundsOf(scene->model).center, [scene, &device](const Vector3& toLight, const Vector3& toEye) {
             Light light;
             for (std::size_t i = 0; i < 3; ++i) light.direction[i] = -toLight[i];
@@ -167,8 +169,19 @@ double lightThrough(Capture& capture, const std::vector<PellucidMaterial>& mater
   return pixels > 0 ? sum / static_cast<double>(pixels) : 0;
 }
 
+// Lights, cameras and skies are what is swept, or not of the light that comes through.
+void requireSwept(const Command& command, const Options& options) {
+  const std::set<std::string> mine = {"--light", "--camera", "--view", "--fov", "--projection", "--environment"};
+  for (const GivenOption& option : command.given())
+    if (mine.count(option.name) > 0)
+      throw UsageError(option.name + ": measure-dots has lights, cameras and surroundings of its own");
+  const auto [width, height] = parseSize("--size", options.scene.size);
+  if (width != height) throw UsageError("--size: \"" + options.scene.size + "\" is not a square");
+}
+
 void measure(const Command& command, const Options& options) {
   const bool isScene = isProcedural(command, options.scene);
+  requireSwept(command, options);
   const DotTable table = tableOf(options);
   const ReplaySettings settings = settingsOf(options);
   Device device({options.scene.device, false});
@@ -180,7 +193,10 @@ void measure(const Command& command, const Options& options) {
   const std::vector<double> dots =
       measureMinimumDots(table, options.swing, [&](const Vector3& toLight, const Vector3& toEye) {
         Capture capture = object.view(toLight, toEye);
-        if (materials.empty()) materials = compileMaterials(capture);
+        if (materials.empty()) {
+          if (isScene) setIor(capture.materials, options.scene);
+          materials = compileMaterials(capture);
+        }
         const double through = lightThrough(capture, materials, settings, replayer);
         progress.advance();
         return through;

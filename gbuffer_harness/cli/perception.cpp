@@ -15,8 +15,6 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr const char* kChannels[] = {"red", "green", "blue"};
-
 struct Answers {
   std::vector<std::string> scenes;  // in the order of the file
   Cells colors;                     // [channel][scene][participant]

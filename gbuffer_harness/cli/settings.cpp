@@ -1,7 +1,6 @@
 #include "cli/settings.h"
 
 #include <algorithm>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "capture/json_field.h"

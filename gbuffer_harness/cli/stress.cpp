@@ -1,7 +1,6 @@
 // `pellucid stress`: random frames through the module, and what must hold for each.
 #include "cli/stress.h"
 
-#include <cmath>
 #include <cstdio>
 #include <iomanip>
 #include <iostream>

@@ -58,14 +58,6 @@ const std::set<std::string> kNotOfTheScene = {
     "--validate",    "--frames",  "--script", "--screenshot", "--exposure",    "--perception",
     "--participant", "--answers", "--save",   "--tonemap",    "--help"};
 
-// Options of the scene that are given, and the model.
-std::vector<std::string> sceneArguments(const Command& command) {
-  std::vector<std::string> names;
-  for (const GivenOption& option : command.given())
-    if (kNotOfTheScene.count(option.name) == 0) names.push_back(option.positional ? option.values.front() : option.name);
-  return names;
-}
-
 bool isCapture(const std::string& path) {
   const std::string extension = extensionOf(path);
   return extension == ".exr" || extension == ".json";
@@ -75,9 +67,9 @@ std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, c
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
   if (!scene.model.empty() && isCapture(scene.model)) {
-    for (const std::string& argument : sceneArguments(command))
-      if (argument.starts_with("--"))
-        throw UsageError(argument + ": " + scene.model + " is a capture, whose scene is what it holds");
+    for (const GivenOption& option : command.given())
+      if (!option.positional && kNotOfTheScene.count(option.name) == 0)
+        throw UsageError(option.name + ": " + scene.model + " is a capture, whose scene is what it holds");
     return [path = scene.model](Device&) { return captureSource(readCapture(path)); };
   }
   if (isProcedural(command, scene))
@@ -126,8 +118,10 @@ void setWindowSize(const std::string& text, ApplicationOptions& options) {
 }
 
 PerceptionOptions perceptionTest(const Command& command, const Options& options) {
-  if (!sceneArguments(command).empty())
-    throw UsageError(sceneArguments(command).front() + ": the scenes are those of --perception");
+  for (const GivenOption& option : command.given())
+    if (option.positional || kNotOfTheScene.count(option.name) == 0)
+      throw UsageError((option.positional ? options.scene.model : option.name) +
+                       ": the scenes are those of --perception");
   if (options.participant.empty() || options.answers.empty())
     throw UsageError("--perception: needs --participant and --answers");
   if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");

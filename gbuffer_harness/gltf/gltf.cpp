@@ -175,7 +175,8 @@ private:
 void Loader::sayIgnored() {
   for (const std::string& name : document_.model.extensionsUsed)
     if (!isDrawn(name)) scene_.warnings.push_back("extension " + name + " is ignored");
-  if (document_.json.contains("animations"))
+  if (const auto animations = document_.json.find("animations");
+      animations != document_.json.end() && !animations->empty())
     scene_.warnings.push_back("animations are ignored: nodes stand as they do without them");
 }
 
@@ -263,10 +264,14 @@ void Loader::checkVertices() const {
     const auto mesh = static_cast<std::size_t>(model.nodes[node].mesh);  // -1: none
     if (!worldFromNode_[node] || mesh >= model.meshes.size()) continue;
     for (std::size_t i = 0; i < model.meshes[mesh].primitives.size(); ++i) {
-      const auto& attributes = model.meshes[mesh].primitives[i].attributes;
-      const auto position = attributes.find("POSITION");
-      const std::size_t accessor =
-          position == attributes.end() ? model.accessors.size() : static_cast<std::size_t>(position->second);
+      const tinygltf::Primitive& primitive = model.meshes[mesh].primitives[i];
+      if (primitive.mode < TINYGLTF_MODE_TRIANGLES) continue;
+      // Without normals each triangle gets vertices of its own.
+      const auto position = primitive.attributes.find("POSITION");
+      const bool flat = primitive.attributes.count("NORMAL") == 0 && primitive.indices != -1;
+      const auto accessor = static_cast<std::size_t>(flat                                     ? primitive.indices
+                                                     : position == primitive.attributes.end() ? -1
+                                                                                              : position->second);
       // What is wrong with one accessor alone is said of the accessor.
       if (accessor < model.accessors.size() && model.accessors[accessor].count <= kMaxVertices)
         vertices += model.accessors[accessor].count;

@@ -1,4 +1,4 @@
-// Input from a file in place of a person: what tests and recorded sessions play to the viewer.
+// Input from a file in place of a person: tests play it to the viewer.
 #pragma once
 
 #include <filesystem>

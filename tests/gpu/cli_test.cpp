@@ -169,4 +169,10 @@ TEST_F(Cli, GuardedStressNamesTheExtensionThatADeviceLacks) {
   EXPECT_NE(outcome.text.find("VK_EXT_external_memory_host is missing"), std::string::npos) << outcome.text;
 }
 
+// A frame that found a fault, which is mended: without the fine filter a pixel at an edge counted less than 0.
+TEST_F(Cli, StressFrameThatFoundAFaultHolds) {
+  expect(0, "stress --seed 303 --first 26 --frames 1 --pixels 12000000 --only more-irradiance",
+         "seed 303, frames 26 to 26, ");
+}
+
 }  // namespace

@@ -87,6 +87,17 @@ const EngineFrame kFrames[] = {
        biased(o, 16, 80, 0);  // 2.5 texels of a map of 2048 around the model
        o.shadow.normalOffset = 2.5;
      }},
+    {"Filtered",
+     [](RasterOptions& o) {
+       biased(o, 32, 1.25, 1.75);
+       o.shadow.filter = 7;
+     }},
+    {"Jittered",
+     [](RasterOptions& o) {
+       biased(o, 16, 4, 3);
+       o.shadow.filter = 1;
+       o.jitter = {0.37, -0.21};
+     }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Habits, EngineSpots, testing::ValuesIn(kFrames),

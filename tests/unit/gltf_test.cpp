@@ -484,6 +484,8 @@ constexpr const char* kMistakes = R"(
 /extensions/KHR_lights_punctual/lights | [{"type": "point"}, {"type": "spot"}] | lights[1].spot: is missing
 /extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": -1}] | lights[0].intensity
 /extensionsRequired | ["KHR_materials_unlit", "VENDOR_thing"] | extensionsRequired | "VENDOR_thing" is not supported
+/extensionsRequired | ["KHR_draco_mesh_compression"] | extensionsRequired | "KHR_draco_mesh_compression" is not supported
+/extensionsRequired | ["EXT_mesh_gpu_instancing"] | extensionsRequired | "EXT_mesh_gpu_instancing" is not supported
 /asset/version | "1.0" | asset.version | 1.0
 )";
 

@@ -55,9 +55,7 @@ std::optional<WalkExit> walk(const TraceScene& scene, const TraceMedium& medium,
   // The way inside, by Fresnel's refraction, or Lambertian where the medium has no boundary.
   glm::dvec3 direction = -lambertian(start.face, random);
   double entering = 1;
-  if (medium.ior == 1) {
-    direction = -lambertian(start.face, random);
-  } else {
+  if (medium.ior != 1) {
     entering = 1 - fresnel(std::clamp(-glm::dot(direction, start.face), 0.0, 1.0), medium.ior);
     direction = refracted(direction, start.face, medium.ior);
   }
