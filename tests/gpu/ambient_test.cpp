@@ -158,6 +158,27 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
   }
 }
 
+// A slab's visible face loses light that leaves by the hidden face. With a gather, probes say so, and the light
+// from all around does not say it again.
+TEST_F(AmbientLight, ProbesHaveTheLossOfTheVisibleFace) {
+  const Capture c = makeScene({.name = "slab", .width = 32, .height = 32, .shadowSize = 32});
+  Capture sky = c;
+  sky.environment = Harmonics{};  // 2 pi on the visible face, 0 on the hidden face
+  for (size_t k = 0; k < 3; ++k) {
+    (*sky.environment)[0][k] = std::sqrt(4 * std::numbers::pi);
+    (*sky.environment)[2][k] = 1.5 * std::sqrt(4 * std::numbers::pi / 3);
+  }
+  for (const uint32_t samples : {0u, 8u}) {
+    ReplaySettings s = gathering(samples);
+    s.ambient = true;
+    const float with = replay(sky, skin(), s).at(16, 16)[0], without = replay(c, skin(), s).at(16, 16)[0];
+    if (samples == 0)
+      EXPECT_LT(with, without - 0.05f);
+    else
+      EXPECT_NEAR(with, without, 1e-4f);
+  }
+}
+
 // Light from hidden faces is not gathered: after the diffusion it adds what it adds without one. The light
 // that visible faces lose differs, because probes tell it where there are some.
 TEST_F(AmbientLight, IsTheSameBesideGatheredLight) {
