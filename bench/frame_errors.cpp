@@ -21,7 +21,6 @@ namespace {
 constexpr unsigned kSeed = 37;
 // Share of the profile's energy that brute force leaves out: a tenth of the least error in the table.
 constexpr double kDiscarded = 1e-4;
-constexpr int kBox = 4;  // pixels a side of the averages that `pellucid evaluate` compares
 
 std::vector<std::uint32_t> choosePixels(const Capture& c, int count) {
   constexpr int kTile = 32;
@@ -115,7 +114,7 @@ Image timesAlbedo(Image image, const Capture& capture) {
 nlohmann::json errorFields(Image result, const Capture& capture) {
   result = timesAlbedo(std::move(result), capture);
   const Comparison comparison = compareImages(
-      result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kBox);
+      result, capture.truth->image, comparisonMask(capture.material, capture.irradiance, Subset::All), kTruthBox);
   ChannelErrors errors{};
   for (size_t c = 0; c < 3; ++c) errors[c] = comparison.channels[c].relativeRmse;
   const EyeMetrics eye = measureEye(

@@ -19,8 +19,6 @@
 namespace pellucid::harness {
 namespace {
 
-constexpr int kBox = 4;  // pixels a side of the averages that are compared
-
 // One model's result.
 struct Evaluation {
   std::string capture, model;
@@ -31,7 +29,7 @@ struct Evaluation {
 std::optional<Comparison> compared(const Capture& capture, const Image& result, Subset subset) {
   const Mask mask = comparisonMask(capture.material, capture.irradiance, subset);
   if (std::find(mask.begin(), mask.end(), 1) == mask.end()) return std::nullopt;
-  return compareImages(result, capture.truth->image, mask, kBox);
+  return compareImages(result, capture.truth->image, mask, kTruthBox);
 }
 
 std::string errorCells(const std::optional<Comparison>& comparison) {
@@ -56,7 +54,7 @@ void print(const std::vector<Evaluation>& evaluations) {
       "Relative RMSE and mean bias (R G B) against the truth, %dx%d averages of which half and more are surface; "
       "unlit: pixels without front irradiance.\n\n"
       "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n",
-      kBox, kBox);
+      kTruthBox, kTruthBox);
   for (const Evaluation& e : evaluations)
     std::printf("| %s | %s | %s | %s |\n", e.capture.c_str(), e.model.c_str(), errorCells(e.all).c_str(),
                 errorCells(e.unlit).c_str());

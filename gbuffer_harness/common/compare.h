@@ -36,6 +36,9 @@ struct Comparison {
   std::size_t nonFiniteA = 0, nonFiniteB = 0;  // masked pixels with a NaN or infinity; left out
 };
 
+// Pixels a side of the averages in which results are compared with a truth: the noise of a pixel averages out.
+inline constexpr int kTruthBox = 4;
+
 // Compares the channels that both images have, at most three. `mask`: one value per pixel, 0 leaves it
 // out; empty: all pixels. box > 1: a sample is the mean over the masked pixels of a box x box block,
 // blocks counted from pixel (0, 0); blocks of whose pixels (those inside the image) less than the part

@@ -1,4 +1,4 @@
-// What frames cost: their dispatches, and the budget that holds a frame time.
+// The time of each dispatch of recent frames, and the budget that holds a frame time.
 #pragma once
 
 #include <cstdint>

@@ -295,7 +295,7 @@ TEST_F(Replay, ReuseOverATurningLight) {
       Capture c = flatCapture(24, 16, 2);
       for (size_t p = 0; p < c.irradiance.data.size(); ++p)
         c.irradiance.data[p] += 0.1f * static_cast<float>(i);
-      // What was outside of the material at a refresh may be inside of it later.
+      // Pixels outside of the material at a refresh may have the material later.
       for (size_t p = 0; p < c.material.size(); ++p) c.material[p] = static_cast<int>(p % 24) < 10 + i;
       const double angle = 0.2 + 0.02 * i;
       for (int k = 0; k < maps; ++k) {

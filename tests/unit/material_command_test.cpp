@@ -53,7 +53,7 @@ std::array<double, 3> row(const std::string& text, const std::string& title) {
   return values;
 }
 
-// What is printed is enough to evaluate T(d).
+// The printed numbers are enough to evaluate T(d).
 TEST(MaterialCommand, PrintsTheFitAndItsError) {
   const std::string text =
       run(R"('{"scattering":[0.74,0.88,1.01],"absorption":[0.032,0.17,0.48],"ior":1.3}')");
