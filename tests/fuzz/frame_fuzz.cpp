@@ -16,15 +16,24 @@ namespace {
 using test::NullCommands;
 using test::NullDevice;
 
-const PellucidContext* nullContext() {
-  static NullDevice& device = *new NullDevice;  // as the context lives as long as the process
-  static PellucidContext* const context = [] {
-    PellucidContextDesc desc = device.desc();
-    PellucidContext* made = nullptr;
-    require(pellucidCreateContext(&desc, &made) == PELLUCID_OK, "the null device has a context");
-    return made;
-  }();
-  return context;
+PellucidContext* makeContext(VkImageViewType shadowViewType) {
+  static NullDevice& device = *new NullDevice;  // as contexts live as long as the process
+  PellucidContextDesc desc = device.desc();
+  desc.options.shadowViewType = shadowViewType;
+  desc.options.lightTables = 1;
+  PellucidContext* made = nullptr;
+  require(pellucidCreateContext(&desc, &made) == PELLUCID_OK, "the null device has a context");
+  return made;
+}
+
+// Maps in layers need a context whose shadow images are arrays. An array context needs a shadow image.
+const PellucidContext* contextFor(const PellucidFrame& frame) {
+  static const PellucidContext* const flat = makeContext(VK_IMAGE_VIEW_TYPE_2D);
+  static const PellucidContext* const layered = makeContext(VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+  const std::span maps(frame.shadowMaps, frame.shadowMaps ? frame.shadowMapCount : 0);
+  const bool hasLayers =
+      std::any_of(maps.begin(), maps.end(), [](const PellucidShadowMap& map) { return map.options.layer > 0; });
+  return hasLayers ? layered : flat;
 }
 
 struct Findings {
@@ -90,7 +99,7 @@ PellucidResult record(const PellucidPlan& plan, const PellucidFrame& frame, VkDe
   const PellucidResult written =
       pellucidWriteConstants(&plan, &frame, memory.get(), static_cast<size_t>(size));
   if (written != PELLUCID_OK) return written;
-  const PellucidResult result = pellucidRecordPlan(nullContext(), commands.handle(), &plan, &frame, &slice);
+  const PellucidResult result = pellucidRecordPlan(contextFor(frame), commands.handle(), &plan, &frame, &slice);
   require(commands.problem.empty(), commands.problem);
   require(commands.dispatches == (result == PELLUCID_OK ? plan.dispatchCount : 0),
           "a recording has all dispatches of the plan, or none");

@@ -11,8 +11,12 @@ namespace pellucid::fuzz {
 
 namespace {
 
+constexpr uint32_t kFew = 5;
+
 // Few of each mostly; from 240 on many, up to `most`.
-uint32_t countOf(uint8_t byte, uint32_t most) { return byte < 240 ? byte % 6u : (byte - 239u) * most / 16u; }
+uint32_t countOf(uint8_t byte, uint32_t most) {
+  return byte < 240 ? byte % (kFew + 1) : (byte - 239u) * most / 16u;
+}
 
 const float kExtremes[] = {0.0f,
                            -0.0f,
@@ -155,13 +159,18 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   // More light tables than there may be are refused before they are read.
   lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
   frame.options.lightTables = lightTables_.data();
-  // Those of materials that are not valid, or shorter than the first, are another material's.
-  if (header[4] & 64) {
+  // Tables of materials that are not valid, or shorter than the first, are another material's. Many materials
+  // always have tables: a material without them costs each of the recordings milliseconds.
+  const bool hasTables = header[4] & 64 || materials_.size() > kFew;
+  if (hasTables) {
     materialTables_.resize(materials_.size());
     for (size_t i = 0; i < materials_.size(); ++i)
-      pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
+      if (i > 0 && std::memcmp(&materials_[i], &materials_[i - 1], sizeof materials_[i]) == 0)
+        materialTables_[i] = materialTables_[i - 1];
+      else
+        pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
   }
-  frame.options.materialTables = header[4] & 64 ? materialTables_.data() : nullptr;
+  frame.options.materialTables = hasTables ? materialTables_.data() : nullptr;
 }
 
 }  // namespace pellucid::fuzz
