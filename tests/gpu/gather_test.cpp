@@ -158,6 +158,19 @@ TEST_F(Gather, CellsAreLinearBetweenProbes) {
   }
 }
 
+// The caster material beside the map: 0 is an opaque occluder, the pixels are of material 1.
+TEST_F(Gather, LightEntersThroughTheReceiversMaterialOnly) {
+  Capture c = backlitSlab(2, PELLUCID_DEPTH_DEVICE);
+  for (float& v : c.irradiance.data) v = 0;
+  ShadowMap& map = c.lights[0].shadowMaps[0];
+  const Image unnamed = replay(c, testMaterial(), gathering(16));
+  for (const int material : {1, 0, 2, 255}) {
+    map.casterMaterial.assign(map.depth.image.pixels(), static_cast<std::uint8_t>(material));
+    const Image out = replay(c, testMaterial(), gathering(16));
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(out.at(4, 4)[k], material == 1 ? unnamed.at(4, 4)[k] : 0) << material;
+  }
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less
