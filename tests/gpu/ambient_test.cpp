@@ -20,6 +20,20 @@ ReplaySettings through() {
   return s;
 }
 
+// Radiance from -z and from +z, linear in between.
+Harmonics alongZ(double behind, double inFront) {
+  Harmonics h{};
+  for (size_t k = 0; k < 3; ++k) {
+    h[0][k] = 0.5 * (behind + inFront) * std::sqrt(4 * std::numbers::pi);
+    h[2][k] = 0.5 * (inFront - behind) * std::sqrt(4 * std::numbers::pi / 3);
+  }
+  return h;
+}
+// Irradiance of a face that looks along z, by the radiance it faces and the radiance of the other side: pi (mean + 2/3 slope).
+double irradianceOf(double facing, double opposite) {
+  return std::numbers::pi * (0.5 * (facing + opposite) + (facing - opposite) / 3);
+}
+
 // A slab of 1 mm whose hidden face looks along -z: light from there comes through, and light from +z is what
 // the visible face loses.
 TEST_F(AmbientLight, SlabSendsOnWhatComesFromBehind) {
@@ -28,18 +42,11 @@ TEST_F(AmbientLight, SlabSendsOnWhatComesFromBehind) {
   const double t[3] = {std::exp(-0.5), std::exp(-1.0), 0.7 * std::exp(-2.0) + 0.3 * std::exp(-0.25)};
   for (const double behind : {0.0, 0.25, 1.0})
     for (const double inFront : {0.0, 0.5}) {
-      // Linear in z: irradiance is pi (mean +- 2/3 slope).
-      const double mean = 0.5 * (behind + inFront), slope = 0.5 * (inFront - behind);
-      c.environment = Harmonics{};
-      for (size_t k = 0; k < 3; ++k) {
-        (*c.environment)[0][k] = mean * std::sqrt(4 * std::numbers::pi);
-        (*c.environment)[2][k] = slope * std::sqrt(4 * std::numbers::pi / 3);
-      }
+      c.environment = alongZ(behind, inFront);
       const Image out = replay(c, m, through());
       for (size_t k = 0; k < 3; ++k) {
         const double rho = double(m.reflectance[k]), a = 0.5 * (1 / rho + rho);
-        const double hidden = std::numbers::pi * (mean - slope * 2 / 3),
-                     visible = std::numbers::pi * (mean + slope * 2 / 3);
+        const double hidden = irradianceOf(behind, inFront), visible = irradianceOf(inFront, behind);
         // T(0) = 1 has no boundary: R(0) = 0.
         const double scale = a * a - (a * a - 1);
         const double returned = a - std::sqrt(scale * t[k] * t[k] + a * a - 1);
@@ -73,12 +80,11 @@ TEST_F(AmbientLight, ThinWallsSendOnTheirPart) {
   }
   Capture c = flatCapture(16, 12);
   c.backDepth.image = {};
-  c.environment = Environment{{2, 2, 2}, {2, 2, 2}}.harmonics();
+  c.environment = alongZ(2, 0.5);
   const Image out = replay(c, m, through());
   for (size_t k = 0; k < 3; ++k)
     EXPECT_NEAR(double(out.at(8, 6)[k]),
-                double(c.irradiance.data[k]) + double(m.wallTransmittance[k]) * 2 * std::numbers::pi / 0.5,
-                1e-4)
+                double(c.irradiance.data[k]) + double(m.wallTransmittance[k]) * irradianceOf(2, 0.5) / 0.5, 1e-4)
         << k;
 }
 
