@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <ostream>
 #include <random>
 
@@ -270,13 +271,16 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
     ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.angleModel = model;
     s.translucency.objectCenter = {1, 2, 3};
+    // Away from the camera, so that lights from behind lie between the last entry and the first.
+    s.translucency.faceVector = {0.2f, 0, -1};
     for (int i = 0; i < 36; ++i)
       s.translucency.minimumDotTable.push_back(-0.95f + static_cast<float>(i * 5 % 36) / 40);
     c.lights.clear();
-    for (int i = 0; i < 24; ++i) {
+    for (int i = 0; i < 36; ++i) {
       Light light;
       light.type = PELLUCID_LIGHT_POINT;
-      const double turn = 0.7 * i, height = std::cos(1.9 * i);
+      // Between two entries each, among them the last and the first.
+      const double turn = (i + 0.4) * std::numbers::pi / 18, height = std::cos(1.9 * i);
       light.position = {200 * std::cos(turn), 200 * height, 200 * std::sin(turn)};
       light.intensity = 4e4;
       c.lights.push_back(light);
