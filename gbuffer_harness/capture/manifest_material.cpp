@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMost = std::numeric_limits<float>::max();
 
 constexpr NumberField<CoefficientMaterial> kCoefficientNumbers[] = {
-    {"g", &CoefficientMaterial::g, -0.999, 0.999}, {"ior", &CoefficientMaterial::ior, 1, 4}};
+    {"g", &CoefficientMaterial::g, -0.999, 0.999}, {"ior", &CoefficientMaterial::ior, 1, 3}};
 constexpr NumberField<SkinMaterial> kSkinNumbers[] = {{"melanin", &SkinMaterial::melanin, 0, 1},
                                                       {"melaninType", &SkinMaterial::melaninType, 0, 1},
                                                       {"hemoglobin", &SkinMaterial::hemoglobin, 0, 1},

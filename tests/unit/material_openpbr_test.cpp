@@ -108,7 +108,7 @@ TEST(OpenPbr, PhotonsSeeTheColor) {
 // it is good to .015. Along the normal it is darker, and behind a boundary darker still.
 TEST(OpenPbr, ColorsOfTheSolverAndOfKullaAndConty) {
   struct Row {
-    double color, albedo[4];  // seen with Kulla & Conty's at index 1, 1.3, 1.4, 1.5; docs/materials.md
+    double color, albedo[4];  // seen with Kulla & Conty's at index 1, 1.3, 1.4, 1.5
   };
   constexpr double kIor[] = {1, 1.3, 1.4, 1.5};
   for (const Row& row : {Row{0.2, {0.162, 0.093, 0.079, 0.068}}, Row{0.5, {0.438, 0.312, 0.277, 0.247}},
