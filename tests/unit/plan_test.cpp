@@ -120,6 +120,20 @@ TEST(Plan, PassesAndSkipsFollowTheFrame) {
   }
 }
 
+// The output is irradiance times albedo, where no light comes through and nothing diffuses.
+TEST(Plan, IrradianceThatIsTheOutputIsLeftAlone) {
+  Frame f;
+  f.frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  f.frame.lightCount = 0;
+  f.frame.output = f.frame.irradiance = Frame::view();
+  EXPECT_EQ(names(f.plan()), Names{});
+  f.frame.albedo = Frame::view();
+  EXPECT_EQ(names(f.plan()), Names{"translucency"});
+  f.frame.albedo = {};
+  f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
+  EXPECT_EQ(names(f.plan()), Names{"translucency"});
+}
+
 // The default frame, as docs/how-it-works.md lists it.
 TEST(Plan, GathersBesideTheDiffusion) {
   const Names all = {"base level", "list blocks", "downsample",    "entry points", "downsample",
