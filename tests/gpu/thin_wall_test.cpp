@@ -106,6 +106,14 @@ TEST_F(ThinWall, LightFromBehindIsTransmittanceTimesTheIrradianceOfTheOtherFace)
     }
 }
 
+TEST_F(ThinWall, LightsDoNotReachBeyondTheirMaps) {
+  Model model = sheet();
+  model.lights = {directional(kBehind[0], kE)};
+  Capture c = draw(model);
+  c.lights[0].shadowMaps[0].clipFromWorld[12] += 3;  // the sheet lies beside the map
+  expectPixels(c, replay(c, gathering(0)), 1, [](double, double, std::size_t) { return 0; });
+}
+
 TEST_F(ThinWall, LightFromTheFrontIsReflectedAlone) {
   Model model = sheet();
   addSkin(model, {0, 8, 0}, 1.5);
