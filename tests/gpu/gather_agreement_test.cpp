@@ -391,4 +391,35 @@ TEST_F(GatherAgreement, ThinSlabsReturnLess) {
   }
 }
 
+// More lights than a dispatch binds: light adds up, and each keeps its own cone.
+TEST_F(GpuTest, GatheredLightsOfSeveralDispatchesAddUp) {
+  const Capture one = makeScene(
+      {.name = "sphere", .width = 32, .height = 32, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 32});
+  ReplaySettings s = gathering(8);
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const auto added = [&](int first, int count) {
+    Capture c = one;
+    c.lights.clear();
+    for (int i = first; i < first + count; ++i) {
+      Light light = one.lights.at(0);
+      light.outerConeAngle *= 1 - 0.05 * i;
+      light.innerConeAngle *= 1 - 0.05 * i;
+      c.lights.push_back(light);
+    }
+    Image out = replay(c, testMaterial(), s);
+    c.lights.clear();
+    const Image none = replay(c, testMaterial(), s);
+    for (std::size_t i = 0; i < out.data.size(); ++i) out.data[i] -= none.data[i];
+    return out;
+  };
+  const Image all = added(0, 16), near = added(0, 8), far = added(8, 8);
+  float most = 0;
+  for (std::size_t i = 0; i < all.data.size(); ++i) {
+    // Probes hold halves.
+    ASSERT_NEAR(all.data[i], near.data[i] + far.data[i], 2e-3f * (0.2f + all.data[i])) << i;
+    most = std::max(most, far.data[i]);
+  }
+  EXPECT_GT(most, 0.1f);
+}
+
 }  // namespace
