@@ -272,7 +272,7 @@ void Loader::checkVertices() const {
       const auto accessor = static_cast<std::size_t>(flat                                     ? primitive.indices
                                                      : position == primitive.attributes.end() ? -1
                                                                                               : position->second);
-      // An accessor that is too large by itself is refused by its own name, when it is read.
+      // An accessor of too many vertices is refused where it is read: that error names the accessor.
       if (accessor < model.accessors.size() && model.accessors[accessor].count <= kMaxVertices)
         vertices += model.accessors[accessor].count;
       if (vertices > kMaxVertices)

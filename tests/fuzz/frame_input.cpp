@@ -160,7 +160,7 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
   frame.options.lightTables = lightTables_.data();
   // Tables of materials that are not valid, or shorter than the first, are another material's. Many materials
-  // always have tables: a material without them costs each of the recordings milliseconds.
+  // always have tables: a material without tables costs each recording milliseconds.
   const bool hasTables = header[4] & 64 || materials_.size() > kFew;
   if (hasTables) {
     materialTables_.resize(materials_.size());

@@ -393,8 +393,8 @@ TEST_F(GatherAgreement, ThinSlabsReturnLess) {
 
 // More lights than a dispatch binds: light adds up, and each keeps its own cone.
 TEST_F(GpuTest, GatheredLightsOfSeveralDispatchesAddUp) {
-  const Capture one = makeScene(
-      {.name = "sphere", .width = 32, .height = 32, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 32});
+  const Capture one = evenlyLit(
+      {.name = "sphere", .width = 32, .height = 32, .lightType = PELLUCID_LIGHT_SPOT, .shadowSize = 32}, 0);
   ReplaySettings s = gathering(8);
   s.features = PELLUCID_FEATURE_TRANSLUCENCY;
   const auto added = [&](int first, int count) {
@@ -406,11 +406,7 @@ TEST_F(GpuTest, GatheredLightsOfSeveralDispatchesAddUp) {
       light.innerConeAngle *= 1 - 0.05 * i;
       c.lights.push_back(light);
     }
-    Image out = replay(c, testMaterial(), s);
-    c.lights.clear();
-    const Image none = replay(c, testMaterial(), s);
-    for (std::size_t i = 0; i < out.data.size(); ++i) out.data[i] -= none.data[i];
-    return out;
+    return rgb(replay(c, testMaterial(), s));
   };
   const Image all = added(0, 16), near = added(0, 8), far = added(8, 8);
   float most = 0;
