@@ -53,9 +53,7 @@ void main() {
 #ifndef THICKNESS
     through = through > 0.0 ? chord(through - front, ray) : -1.0;
 #endif
-    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
-    Surface s = makeSurface(ray, front, through, normal);
-    s.material = material;
+    Surface s = surfaceOf(pixel, ray, front, through, material);
     for (uint i = 0u; i < pass.value.x; ++i)
       sum += exitanceOf(lightTransmission(lights[i], s, pixel), material - 1u);
     sum *= materials[material - 1u].inverseReflectance.rgb;

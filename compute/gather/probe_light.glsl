@@ -124,7 +124,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
                  out GatherRings rings) {
   float mm = frame.camera.range.w;
   bool parallel = directional(light);
-  float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
+  float facing = max(-dot(x.normal, toLight), 0.0);
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
   rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
@@ -134,7 +134,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   uvec4 bits = fetchEntry(rings.map, placeInMap(parallel, point), 0, off);
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
-  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn)), 1.0e-12);
+  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   EntryPoint own = unpackEntry(bits);
@@ -243,9 +243,9 @@ struct Gathered {
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
                float flux, float axisCosine) {
   float squared = dot(to, to);
-  float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
+  float opposite = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);
-  float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
+  float squaredH = through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4);
   float h = sqrt(min(squaredH, squared));
   float curved = (1.0 - opposite) * min(squaredH / max(squared, 1.0e-12), 1.0);
   vec3 comes = opposite * gatherTransmitted(lengths, slabOf(m, lengths, h), curved, h, near, far);
@@ -328,7 +328,7 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, BodyF
   Incident incident = lightAt(light, x.position);
   GatherRings rings;
   if (!gatherRings(light, x, incident.toLight, incident.distanceTo, materials[m].gather.lengths.z, rings)) return vec3(0.0);
-  float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
+  float cosine = max(dot(x.normal, incident.toLight), 0.0);
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);

@@ -72,11 +72,6 @@ static_assert(PELLUCID_SHADER_ANGLE_POLYNOMIAL == PELLUCID_ANGLE_POLYNOMIAL);
 static_assert(PELLUCID_SHADER_DEBUG_THICKNESS == PELLUCID_DEBUG_THICKNESS);
 static_assert(PELLUCID_SHADER_DEBUG_TRANSMITTANCE == PELLUCID_DEBUG_TRANSMITTANCE);
 static_assert(PELLUCID_SHADER_DEBUG_OCCLUSION == PELLUCID_DEBUG_OCCLUSION);
-static_assert(PELLUCID_SHADER_NORMALS_SNORM == PELLUCID_NORMALS_SNORM);
-static_assert(PELLUCID_SHADER_NORMALS_UNORM == PELLUCID_NORMALS_UNORM);
-static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL == PELLUCID_NORMALS_OCTAHEDRAL);
-static_assert(PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM == PELLUCID_NORMALS_OCTAHEDRAL_UNORM);
-static_assert(PELLUCID_CONSTANT_NORMALS == PELLUCID_SPECIALIZATION_NORMALS);
 static_assert(PELLUCID_CONSTANT_LIGHT_TABLES == PELLUCID_SPECIALIZATION_LIGHT_TABLES);
 static_assert(PELLUCID_CONSTANT_USES == PELLUCID_SPECIALIZATION_USES);
 static_assert(PELLUCID_SHADER_USE_THIN_WALLS == PELLUCID_USE_THIN_WALLS);
@@ -121,12 +116,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
   c.camera = facts.camera;
-  c.viewFromNormal = f.options.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
-  const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
-  c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
-  c.normalRay[1] = {normalFromView * glm::vec3(camera.rayX.x, camera.rayX.y, 0), 0};
-  c.normalRay[2] = {normalFromView * glm::vec3(camera.rayY.x, camera.rayY.y, 0), 0};
   const auto along = [](const glm::vec4& ray) {
     const glm::vec2 step = glm::vec2(ray.x + ray.z, ray.y + ray.w);  // at distance 1, as anywhere
     return glm::length(step) > 0 ? glm::normalize(step) : glm::vec2(0);
@@ -137,6 +127,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
+  c.axes = {column, row};
   const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;

@@ -33,7 +33,7 @@ constexpr BindingSet kColorWrites = bindings(PELLUCID_BINDING_DESTINATION);
 constexpr BindingSet kLightReads =
     kColorReads | shadowImages(PELLUCID_SHADOW_IMAGE_COUNT) |
     bindings(PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_SHADOWS, PELLUCID_BINDING_MATERIALS,
-             PELLUCID_BINDING_NORMAL, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_HIDDEN_IRRADIANCE);
+             PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_HIDDEN_IRRADIANCE);
 constexpr PellucidSpecialization kDebugViews[] = {{PELLUCID_CONSTANT_DEBUG_VIEWS, 1}};
 
 constexpr Pass kTranslucencyPass{.pipeline = "translucency",
@@ -94,7 +94,7 @@ constexpr Pass kBaseLevelPass{
     .words = kBaseLevel,
     .uses = kDiffusion,
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
-                      PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_NORMAL),
+                      PELLUCID_BINDING_SOURCE),
     .writes = bindings(PELLUCID_BINDING_LEVELS, PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS,
                        PELLUCID_BINDING_DESTINATION)};
 
@@ -208,8 +208,8 @@ constexpr Pass kEntryPointsPass{
     .uses = kGather,
     .reads = shadowImages(PELLUCID_ENTRY_IMAGE_COUNT) |
              bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
-                      PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_NORMAL,
-                      PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_BLOCKS),
+                      PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
+                      PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
@@ -219,7 +219,7 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).push(1, entriesOf(group));
+  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel)).push(1, entriesOf(group));
   if (p.facts.stages.lists)
     step.groups(columns * rows * group.shadowCount).list(PELLUCID_LIST_ENTRIES);
   else
@@ -230,7 +230,7 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
 
 constexpr BindingSet kProbeReads = bindings(
     PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS, PELLUCID_BINDING_MATERIALS,
-    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_NORMAL,
+    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_PYRAMID,
     PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_ENTRY_POINTS, PELLUCID_BINDING_BLOCKS);
 constexpr BindingSet kProbeWrites = bindings(PELLUCID_BINDING_PROBES_DESTINATION);
 
@@ -251,6 +251,7 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
   p.add(kProbesPass, "probes")
       .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
       .lights(group)
+      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
       .push(0, p.facts.gatherSpacing)
       .push(1, group.gathered)
       .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
@@ -360,8 +361,8 @@ private:
       addBaseLevel(p_, source_, source_);
     if (stages_.lists) addListBlocks(p_);
     for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
-    addUpsample(p_, p_.facts.coarsestLevel);
     gather();
+    addUpsample(p_, p_.facts.coarsestLevel);
     pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
   }
 

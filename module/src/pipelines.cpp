@@ -67,7 +67,6 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
   constexpr size_t kMostConstants = 5;
   std::array<PellucidSpecialization, kMostConstants> constants;
   PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
-  *end++ = {PELLUCID_SPECIALIZATION_NORMALS, desc.options.normalEncoding};
   *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.options.lightTables};
   *end++ = {PELLUCID_SPECIALIZATION_USES, desc.options.uses != 0 ? desc.options.uses : UINT32_MAX};
   const auto count = static_cast<uint32_t>(end - constants.data());
