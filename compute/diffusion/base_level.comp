@@ -1,16 +1,12 @@
 // Makes level 1 of the pyramid from the pixels, a block of 64 x 64 a group: color, depth, slope and area of the surface of each quad
-// of 2 x 2 pixels. Every pass takes surfaces from these texels. The pass finds which cells of the block hold material and how far
-// away their surfaces are, and copies the pixels where the plan asks for it.
+// of 2 x 2 pixels. Every pass takes surfaces from these texels. The pass lists where later ones have work: it finds which cells of the
+// block hold material and how far away their surfaces are. It copies the pixels where the plan asks for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
+#include "diffusion/list_blocks.glsl"
 #include "diffusion/texel.glsl"
-
-layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
-  BlockLists lists;
-  uint entryGroups[];
-};
 
 const int kQuads = PELLUCID_BLOCK / 2 / GROUP_SIDE; // a side, of an invocation
 const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, and with those around it
@@ -222,6 +218,8 @@ void main() {
   }
   barrier();
   bool some = (cells[0] | cells[1]) != 0u;
+  // Early, so that the pixels' loads hide the latency.
+  if (goesByLists() && invocation < 9) countBlock(block, invocation, uvec2(cells[0], cells[1]));
   vec3 colors[kQuads * kQuads];
   if (some) {
     [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
@@ -242,9 +240,9 @@ void main() {
   if (invocation < 2) writeWord(blockWord(block, kCellWord + uint(invocation)), cells[invocation]);
   if (invocation == 2) writeWord(blockWord(block, kNearestWord), nearest);
   if (invocation == 3) writeWord(blockWord(block, kFarthestWord), farthest);
-  // All lists become empty: a recording may run more than once.
-  if (block == 0u) {
-    if (invocation < PELLUCID_LISTS) lists.commands[invocation].x = 0u;
-    for (uint i = uint(invocation); i < lists.maps.x * uint(PELLUCID_ENTRY_GROUP_WORDS); i += uint(GROUP_SIDE * GROUP_SIDE)) entryGroups[i] = 0u;
-  }
+  if (!goesByLists()) return;
+  if (block == 0u && invocation < PELLUCID_LISTS) lists.commands[invocation].ran.x = 0u;
+  if (farthest == 0u) return;
+  for (uint i = uint(invocation); i < lists.maps.x * kEntryGroupRows; i += uint(GROUP_SIDE * GROUP_SIDE))
+    listEntryGroups(i / kEntryGroupRows, block, int(i % kEntryGroupRows), uintBitsToFloat(nearest), uintBitsToFloat(farthest));
 }

@@ -22,7 +22,6 @@
 #define PELLUCID_ENTRY_POINTS_GROUP 16
 #define PELLUCID_PROBES_GROUP 8   // cells of the gather
 #define PELLUCID_FILTER_GROUP 16  // cells of the gather
-#define PELLUCID_LIST_GROUP 256   // invocations of the pass that lists blocks, in a row
 
 // Bindings of set 0: number, name in the shaders' sources, type. A number is one binding in all passes, each of which declares
 // those that it reads or writes (module/src/passes.cpp).
@@ -242,9 +241,18 @@ struct KernelConstants {
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
 
-// Buffer of the passes that find and list blocks. Bits of listed groups of entry points follow.
+// Blocks of an image that goes by lists, at most. Counters of two blocks have a word, see compute/diffusion/list_blocks.glsl.
+#define PELLUCID_LISTED_BLOCKS 16384
+
+struct ListCommand {
+  uvec4 groups; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
+  uvec4 ran;    // x: groups of the last run
+};
+
+// Buffer of the passes that find and list blocks. Blocks' counters and bits of listed groups of entry points follow. Before and after
+// a frame all counts and bits are 0, but those of `ran`.
 struct BlockLists {
-  uvec4 commands[PELLUCID_LISTS]; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
+  ListCommand commands[PELLUCID_LISTS];
   uvec4 maps; // x: shadow maps that are gathered from
   vec4 reach; // x: how far from a surface probes look for entry points, scene units
 };

@@ -11,7 +11,6 @@
 #include "kEntryPoints.h"
 #include "kEntryPointsArray.h"
 #include "kFilterProbes.h"
-#include "kListBlocks.h"
 #include "kProbes.h"
 #include "kTranslucency.h"
 #include "kTranslucencyArray.h"
@@ -94,7 +93,7 @@ constexpr Pass kBaseLevelPass{
     .words = kBaseLevel,
     .uses = kDiffusion,
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
-                      PELLUCID_BINDING_SOURCE),
+                      PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_GATHER_MAPS),
     .writes = bindings(PELLUCID_BINDING_LEVELS, PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS,
                        PELLUCID_BINDING_DESTINATION)};
 
@@ -103,6 +102,7 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
   const bool copies = copy != source;
   Step step = p.add(kBaseLevelPass, "base level");
   step.groups(p.facts.blocks.count())
+      .lights(LightGroup{})
       .image(PELLUCID_BINDING_SOURCE, source)
       .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
       .push(0, copies);
@@ -110,18 +110,6 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
     step.image(PELLUCID_BINDING_DESTINATION, copy);
   else
     step.standIn(PELLUCID_BINDING_DESTINATION, PELLUCID_RESOURCE_OUTPUT);
-}
-
-// ---- Lists of blocks ----------------------------------------------------------------------------------
-
-constexpr Pass kListBlocksPass{.pipeline = "list_blocks",
-                               .words = kListBlocks,
-                               .uses = kDiffusion,
-                               .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_GATHER_MAPS),
-                               .writes = bindings(PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS)};
-
-void addListBlocks(Planner& p) {
-  p.add(kListBlocksPass, "list blocks").groups(p.facts.blocks.listGroups()).lights(LightGroup{});
 }
 
 // ---- Downsampling -------------------------------------------------------------------------------------
@@ -184,7 +172,7 @@ constexpr Pass kDiffusePass{
     .uses = kDiffusion,
     .reads = kColorReads |
              bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
-    .writes = kColorWrites,
+    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS),
     .counted = Counted::Blocks};
 
 // With the light of the probes, if the frame has some.
@@ -286,7 +274,7 @@ void addProbeFilter(Planner& p) {
 // ---- All ----------------------------------------------------------------------------------------------
 
 constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,  &kAddHistoryPass,  &kBaseLevelPass,
-                                   &kListBlocksPass,   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
+                                   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
                                    &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass,
                                    &kAccumulateProbesPass};
 constexpr bool fitSlots() {
@@ -359,7 +347,6 @@ private:
       pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
     else
       addBaseLevel(p_, source_, source_);
-    if (stages_.lists) addListBlocks(p_);
     for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
     gather();
     addUpsample(p_, p_.facts.coarsestLevel);
