@@ -107,7 +107,6 @@ void listBlock(uint block) {
   atomicAdd(lists.commands[PELLUCID_LIST_PROBES].x, 1u);
   atomicAdd(lists.commands[PELLUCID_LIST_FILTER].x, 1u);
   atomicMax(lists.commands[PELLUCID_LIST_COARSE].x, lists.commands[PELLUCID_LIST_COARSE].w);
-  atomicMax(lists.commands[PELLUCID_LIST_COARSEST].x, lists.commands[PELLUCID_LIST_COARSEST].w);
 }
 
 void main() {
