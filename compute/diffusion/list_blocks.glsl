@@ -25,7 +25,6 @@ void listBlock(uint block, uint counts) {
   atomicAdd(lists.commands[PELLUCID_LIST_PROBES].groups.x, 1u);
   atomicAdd(lists.commands[PELLUCID_LIST_FILTER].groups.x, 1u);
   atomicMax(lists.commands[PELLUCID_LIST_COARSE].groups.x, lists.commands[PELLUCID_LIST_COARSE].groups.w);
-  atomicMax(lists.commands[PELLUCID_LIST_COARSEST].groups.x, lists.commands[PELLUCID_LIST_COARSEST].groups.w);
 }
 
 // Counts a block at the i-th of the 3 x 3 blocks around it. `cells`: its words of cells with material.

@@ -15,8 +15,10 @@
 #define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
 #define PELLUCID_BLOCK_GROUP 16   // side of the groups that do one block each
-#define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of the second of the two levels that a group makes
+#define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of level 3 that a group makes
 #define PELLUCID_DOWNSAMPLE_ROWS 4
+#define PELLUCID_COARSE_COLUMNS 2 // texels of level 7
+#define PELLUCID_COARSE_ROWS 1
 #define PELLUCID_DIFFUSE_COLUMNS 32 // pixels that a group diffuses
 #define PELLUCID_DIFFUSE_ROWS 16
 #define PELLUCID_ENTRY_POINTS_GROUP 16
@@ -42,7 +44,7 @@
   X(PELLUCID_BINDING_HELD, 13, heldImage, kSampled) /* the output's content before the frame */ \
   X(PELLUCID_BINDING_HISTORY, 14, historyImage, kSampled) \
   X(PELLUCID_BINDING_PYRAMID, 15, pyramidImage, kSampled) /* the level or levels that are read */ \
-  X(PELLUCID_BINDING_COARSER_LEVELS, 16, coarserLevelsImage, kSampled) /* of upsampling: levels 4 and 5 */ \
+  X(PELLUCID_BINDING_COARSER_LEVELS, 16, coarserLevelsImage, kSampled) /* of upsampling: levels 4 to 7 */ \
   X(PELLUCID_BINDING_ENTRY_POINTS, 17, entriesImage, kSampled) \
   X(PELLUCID_BINDING_FOUND_PROBES, 18, foundImage, kSampled) \
   X(PELLUCID_BINDING_FILTERED_PROBES, 19, filteredProbesImage, kSampled) \
@@ -233,10 +235,9 @@ struct KernelConstants {
 #define PELLUCID_LIST_DIFFUSE 2u    // blocks with material
 #define PELLUCID_LIST_PROBES 3u     // the same ones
 #define PELLUCID_LIST_FILTER 4u     // the same ones
-#define PELLUCID_LIST_COARSE 5u     // levels 4 and 5: all groups, if there is material
-#define PELLUCID_LIST_COARSEST 6u   // levels 6 and 7: the same
-#define PELLUCID_LIST_ENTRIES 7u    // groups of entry points within reach of what blocks show
-#define PELLUCID_LISTS 8
+#define PELLUCID_LIST_COARSE 5u     // levels 4 to 7: all groups, if there is material
+#define PELLUCID_LIST_ENTRIES 6u    // groups of entry points within reach of what blocks show
+#define PELLUCID_LISTS 7
 #define PELLUCID_BLOCK_WORDS 5    // see compute/frame/blocks.glsl
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
@@ -261,7 +262,7 @@ struct BlockLists {
 // translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
 // add history: unused, unused, 1 if this is the last dispatch
 // base level: 1 to copy the pixels
-// downsample: finer level, columns of groups
+// coarse levels: columns of groups, coarsest level
 // upsample: coarsest level
 // diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
 // entry points: unused, columns and, from bit 16 on, rows of entry points

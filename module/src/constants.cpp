@@ -167,7 +167,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
-    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
+    c.level[level] = {place.column - place.rect.x, -place.rect.y, 0, 0};
   }
   const PyramidPlace& second = facts.pyramid.levels[2];
   c.level[0] = {-second.rect.x, -second.rect.y, facts.pyramid.sharesColumn - second.rect.x, -second.rect.y};

@@ -6,6 +6,7 @@
 
 #include "kAddHistory.h"
 #include "kBaseLevel.h"
+#include "kCoarseLevels.h"
 #include "kDiffuse.h"
 #include "kDownsample.h"
 #include "kEntryPoints.h"
@@ -121,28 +122,39 @@ constexpr Pass kDownsamplePass{
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_LEVELS)};
 
+// Levels 2 and 3.
+void addDownsample(Planner& p) {
+  constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
+  p.add(kDownsamplePass, "downsample")
+      .blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS)
+      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
+      .image(PELLUCID_BINDING_LEVELS, p.level(2));
+}
+
+constexpr Pass kCoarseLevelsPass{.pipeline = "coarse_levels",
+                                 .words = kCoarseLevels,
+                                 .uses = kDiffusion,
+                                 .reads = kDownsamplePass.reads,
+                                 .writes = kDownsamplePass.writes};
+
 // Groups of `side` texels that [first, first + size) touches. Shifts round down, as the border's texels begin
 // below 0.
 uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   const int shift = std::countr_zero(side);
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
 }
-// Two levels from `finer`.
-void addDownsample(Planner& p, uint32_t finer) {
-  Step step = p.add(kDownsamplePass, "downsample");
-  step.image(PELLUCID_BINDING_PYRAMID, p.level(finer))
-      .image(PELLUCID_BINDING_LEVELS, p.level(finer + 1))
-      .push(0, finer);
-  if (finer == kFirstLevel) {
-    constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
-    step.blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS);
-    return;
-  }
-  const auto& rect = p.facts.pyramid.levels[finer + 2].rect;
-  const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_DOWNSAMPLE_COLUMNS);
-  step.groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_DOWNSAMPLE_ROWS))
-      .push(1, columns)
-      .list(finer == kFirstLevel + 2 ? PELLUCID_LIST_COARSE : PELLUCID_LIST_COARSEST);
+
+// Levels 4 to `coarsest`. Their parts follow level 7, whether or not that is made.
+void addCoarseLevels(Planner& p, uint32_t coarsest) {
+  const auto& rect = p.facts.pyramid.levels[PELLUCID_LAST_LEVEL].rect;
+  const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_COARSE_COLUMNS);
+  p.add(kCoarseLevelsPass, "coarse levels")
+      .groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_COARSE_ROWS))
+      .image(PELLUCID_BINDING_PYRAMID, p.level(3))
+      .image(PELLUCID_BINDING_LEVELS, p.level(4))
+      .push(0, columns)
+      .push(1, coarsest)
+      .list(PELLUCID_LIST_COARSE);
 }
 
 // ---- Upsampling ---------------------------------------------------------------------------------------
@@ -273,10 +285,9 @@ void addProbeFilter(Planner& p) {
 
 // ---- All ----------------------------------------------------------------------------------------------
 
-constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,  &kAddHistoryPass,  &kBaseLevelPass,
-                                   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
-                                   &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass,
-                                   &kAccumulateProbesPass};
+constexpr const Pass* kPasses[] = {
+    &kTranslucencyPass, &kDebugViewPass, &kAddHistoryPass,  &kBaseLevelPass, &kDownsamplePass,   &kCoarseLevelsPass,
+    &kUpsamplePass,     &kDiffusePass,   &kEntryPointsPass, &kProbesPass,    &kFilterProbesPass, &kAccumulateProbesPass};
 constexpr bool fitSlots() {
   for (const Pass* pass : kPasses)
     if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;
@@ -347,7 +358,8 @@ private:
       pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
     else
       addBaseLevel(p_, source_, source_);
-    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
+    addDownsample(p_);
+    if (p_.facts.coarsestLevel > 3) addCoarseLevels(p_, p_.facts.coarsestLevel);
     gather();
     addUpsample(p_, p_.facts.coarsestLevel);
     pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
