@@ -6,7 +6,6 @@
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #include "diffusion/texel.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
   BlockLists lists;
   uint entryGroups[];
@@ -21,26 +20,7 @@ shared uint nearest, farthest; // bits of planar distances, which are above 0
 ivec2 quadInBlock(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i % kQuads, i / kQuads); }
 ivec2 cellOfQuad(ivec2 quad) { return quad >> (kCellShift - 1); }
 
-// Outward normal of any length, in the image's space; 0: none.
-vec3 normalAt(ivec2 pixel) {
-  return hasFlag(PELLUCID_FLAG_NORMAL) ? decodeNormal(texelFetch(normalImage, inImage(pixel), 0)) : vec3(0.0);
-}
-
 // ---- A texel from its quad: four pixels, rows first, packed by packHalves(color, material); depth <= 0: none
-
-// The pixel whose normal stands for a quad that is one surface: any of the four, by turns.
-ivec2 pixelOfQuad(ivec2 quad) { return 2 * quad + (quad.yx & 1); }
-
-// Cosine, of 87 degrees: surfaces closer to edge-on show no more area than one there.
-const float kLeastCosine = 0.05;
-
-// Projected-area weight of a pixel with a normal of any length > 0; 0: it has none.
-float areaOf(vec2 pixel, vec3 normal) {
-  // The ray is in the normal's space.
-  vec3 ray = frame.normalRay[0].xyz + pixel.x * frame.normalRay[1].xyz + pixel.y * frame.normalRay[2].xyz;
-  float squared = dot(normal, normal), along = dot(normal, ray);
-  return isWithin(squared, 1.0e-8, kMostFloat) ? inversesqrt(max(along * along * (1.0 / squared), kLeastCosine * kLeastCosine)) : 0.0;
-}
 
 // Projected-area weight of a quad that is one surface, as its depths say.
 float areaOfQuad(ivec2 quad, float depth[4]) {
@@ -68,11 +48,6 @@ uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
 // The texel takes the nearest pixel's surface. A pixel behind it counts if its depth is within a pixel's step of a surface as steep
 // as its own, or as one 83 degrees from facing the camera.
 uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
-  vec4 area;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 pixel = withinRect(2 * quad + ivec2(i & 1, i >> 1));
-    area[i] = areaOf(vec2(pixel), normalAt(pixel));
-  }
   uint nearestMaterial = 0u, any = 0u;
   float nearest = kNoDepth;
   for (int i = 0; i < 4; ++i) {
@@ -89,9 +64,9 @@ uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
   float sum = 0.0, weights = 0.0, areas = 0.0;
   for (int i = 0; i < 4; ++i) {
     bool counts = depth[i] > 0.0 && packed[i].y >> 16 == nearestMaterial &&
-                  depth[i] - nearest <= side * max(8.0, area[i]);
+                  depth[i] - nearest <= 8.0 * side;
     // Across an edge depths say nothing of slopes.
-    float w = counts ? 1.0 : 0.0, a = w * (area[i] > 0.0 ? area[i] : 1.0);
+    float w = counts ? 1.0 : 0.0, a = w;
     mean += a * unpackHalves(packed[i]);
     sum += counts ? depth[i] : 0.0;
     weights += w;
@@ -101,14 +76,11 @@ uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
   return packTexel(Texel(mean / areas, 0.25 * areas, nearestMaterial, sum / weights, vec2(0.0)), 0u);
 }
 
-// `normal`: of pixelOfQuad(quad).
-uvec4 texelOfQuad(ivec2 quad, uvec2 packed[4], float depth[4], vec3 normal) {
+uvec4 texelOfQuad(ivec2 quad, uvec2 packed[4], float depth[4]) {
   // An empty quad looks nothing up.
   if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) return uvec4(0u);
   if (!isWholeQuad(packed, depth)) return edgeQuadTexel(quad, packed, depth);
-  float area = areaOf(vec2(pixelOfQuad(quad)), normal);
-  if (area == 0.0) area = areaOfQuad(quad, depth);
-  return wholeQuadTexel(packed, depth, area);
+  return wholeQuadTexel(packed, depth, areaOfQuad(quad, depth));
 }
 
 // Makes a quad's texel of level 1. `materials`: of its pixels, a byte each.
@@ -117,7 +89,6 @@ void writeQuad(ivec2 quad, uint materials) {
   float depth[4];
   vec4 source[4];
   // All loads come before the first use, so that their latencies overlap.
-  vec3 normal = normalAt(withinRect(pixelOfQuad(quad)));
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = inImage(withinRect(2 * quad + ivec2(i & 1, i >> 1)));
     depth[i] = frontDistance(at);
@@ -134,7 +105,7 @@ void writeQuad(ivec2 quad, uint materials) {
     least = min(least, depth[i]);
     most = max(most, depth[i]);
   }
-  writeLevel(1u, quad, texelOfQuad(quad, packed, depth, normal));
+  writeLevel(1u, quad, texelOfQuad(quad, packed, depth));
   // Read first: most invocations have nothing to add. An old value costs an atomic more and changes nothing.
   if (!(most > 0.0)) return;
   if (floatBitsToUint(least) < nearest) atomicMin(nearest, floatBitsToUint(least));

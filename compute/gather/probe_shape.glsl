@@ -7,7 +7,18 @@
 #include "gather/probe_light.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
+
+float frontBeside(ivec2 pixel, uint material) {
+  ivec2 at = inImage(withinRect(pixel));
+  return materialAt(at) == material ? frontDistance(at) : -1.0;
+}
+
+// Of the depths of a pixel and its neighbors of the same material.
+vec3 depthsNormal(ivec2 pixel, uint material, float front) {
+  vec4 beside = vec4(frontBeside(pixel + ivec2(1, 0), material), frontBeside(pixel - ivec2(1, 0), material),
+                     frontBeside(pixel + ivec2(0, 1), material), frontBeside(pixel - ivec2(0, 1), material));
+  return normalOfDepths(frame.camera, pixel, front, beside);
+}
 
 // Step from a probe to a pixel beside it.
 struct Beside {
@@ -17,8 +28,9 @@ struct Beside {
 
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
   ivec2 at = withinRect(pixel);
-  float front = materialAt(inImage(at)) != 0u ? frontDistance(inImage(at)) : -1.0;
-  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(at), 0));
+  uint material = materialAt(inImage(at));
+  float front = material != 0u ? frontDistance(inImage(at)) : -1.0;
+  vec3 normal = front > 0.0 ? depthsNormal(at, material, front) : vec3(0.0);
   Surface s = makeSurface(viewRay(frame.camera, at), front, -1.0, normal);
   vec3 apart = (s.position - x.position) * frame.camera.range.w;
   float ratio = dot(apart, apart) / max(reach * reach, 1.0e-30);

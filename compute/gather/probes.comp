@@ -12,14 +12,13 @@ layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform
 
 const uint kAdds = 1u << 31; // of pass.value.z
 
-// Finds the first pixel of the cell with a solid's surface: all of the place but its normal, and the texel of the normal image.
+// Finds the first pixel of the cell with a solid's surface: all of the place but its normal.
 // Loads of a pixel are at once, so that their latencies overlap: the first pixel is the one, as a rule.
-bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
+bool findSurface(ivec2 cell, int side, out ProbePlace place) {
   for (place.index = 0; place.index < side * side; ++place.index) {
     ivec2 pixel = pixelInCell(cell, side, place.index), within = withinRect(pixel);
     uint value = materialValueAt(inImage(within));
     place.front = frontDistance(inImage(within));
-    normal = texelFetch(normalImage, inImage(within), 0);
     place.material = within == pixel ? materialIndex(value) : 0u;
     bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;
     if (place.material != 0u && place.front > 0.0 && !thin) return true;
@@ -28,13 +27,11 @@ bool findSurface(ivec2 cell, int side, out ProbePlace place, out vec4 normal) {
   return false;
 }
 
-uvec4 probeAt(ivec2 cell, int side, ProbePlace place, vec4 normalTexel) {
+uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
   uint m = place.material - 1u;
   ivec2 pixel = pixelInCell(cell, side, place.index);
-  vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(normalTexel);
   ViewRay ray = viewRay(frame.camera, pixel);
-  Surface x = makeSurface(ray, place.front, -1.0, normal);
+  Surface x = makeSurface(ray, place.front, -1.0, depthsNormal(pixel, place.material, place.front));
   place.normal = x.hasNormal ? x.normal : -x.view;
   // Packed before lights are gathered, whose sums need the registers.
   uvec4 bits = packPlace(place);
@@ -60,7 +57,6 @@ void main() {
   ivec2 cell = firstPixel / side + ivec2(gl_LocalInvocationID.xy);
   if (!contains(cellsOf(frame.rect, side), cell)) return;
   ProbePlace place;
-  vec4 normal;
-  bool found = findSurface(cell, side, place, normal);
-  imageStore(probesImage, cell, found ? probeAt(cell, side, place, normal) : kNoProbe);
+  bool found = findSurface(cell, side, place);
+  imageStore(probesImage, cell, found ? probeAt(cell, side, place) : kNoProbe);
 }

@@ -8,8 +8,6 @@
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
-
 // A point of the surface that a map stores.
 struct MapPoint {
   vec3 position; // view space
@@ -56,13 +54,8 @@ float frontAround(ivec2 pixel) {
   return materialAt(at) != 0u ? front : -1.0;
 }
 
-// From the normal image or the depths around.
+// From the depths around.
 vec3 shownNormal(ivec2 pixel, float front) {
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) {
-    vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, inImage(withinRect(pixel)), 0));
-    float squared = dot(normal, normal);
-    return isWithin(squared, 1.0e-8, 1.0e8) ? normal * inversesqrt(squared) : vec3(0.0);
-  }
   vec4 beside = vec4(frontAround(pixel + ivec2(1, 0)), frontAround(pixel - ivec2(1, 0)), frontAround(pixel + ivec2(0, 1)),
                      frontAround(pixel - ivec2(0, 1)));
   return normalOfDepths(frame.camera, pixel, front, beside);

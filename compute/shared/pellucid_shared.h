@@ -37,26 +37,25 @@
   X(PELLUCID_BINDING_LISTS, 7, lists, kStorage) /* BlockLists */ \
   X(PELLUCID_BINDING_FRONT_DEPTH, 8, frontDepthImage, kSampled) \
   X(PELLUCID_BINDING_BACK_DEPTH, 9, backDepthImage, kSampled) \
-  X(PELLUCID_BINDING_NORMAL, 10, normalImage, kSampled) \
-  X(PELLUCID_BINDING_ALBEDO, 11, albedoImage, kSampled) \
-  X(PELLUCID_BINDING_MATERIAL, 12, materialImage, kSampled) \
-  X(PELLUCID_BINDING_SOURCE, 13, sourceImage, kSampled) \
-  X(PELLUCID_BINDING_HELD, 14, heldImage, kSampled) /* the output's content before the frame */ \
-  X(PELLUCID_BINDING_HISTORY, 15, historyImage, kSampled) \
-  X(PELLUCID_BINDING_PYRAMID, 16, pyramidImage, kSampled) /* the level or levels that are read */ \
-  X(PELLUCID_BINDING_COARSER_LEVELS, 17, coarserLevelsImage, kSampled) /* of upsampling: levels 4 and 5 */ \
-  X(PELLUCID_BINDING_ENTRY_POINTS, 18, entriesImage, kSampled) \
-  X(PELLUCID_BINDING_FOUND_PROBES, 19, foundImage, kSampled) \
-  X(PELLUCID_BINDING_FILTERED_PROBES, 20, filteredProbesImage, kSampled) \
-  X(PELLUCID_BINDING_DESTINATION, 21, destinationImage, kStored) \
-  X(PELLUCID_BINDING_LEVELS, 22, levelsDestination, kStored) /* of the pyramid, written */ \
-  X(PELLUCID_BINDING_ENTRIES_DESTINATION, 23, entriesDestination, kStored) \
-  X(PELLUCID_BINDING_PROBES_DESTINATION, 24, probesImage, kStored) \
-  X(PELLUCID_BINDING_FILTERED_DESTINATION, 25, sharedImage, kStored) \
-  X(PELLUCID_BINDING_BLOCKS, 26, blocksImage, kStored) /* words of the blocks and lists of them */ \
-  X(PELLUCID_BINDING_HIDDEN_IRRADIANCE, 27, hiddenIrradianceImage, kSampled) \
-  X(PELLUCID_BINDING_MOTION, 28, motionImage, kSampled) \
-  X(PELLUCID_BINDING_SHADOW_IMAGES, 29, shadowImage0, kSampled) /* the last ones: one each for as many shadow images as a pass has */
+  X(PELLUCID_BINDING_ALBEDO, 10, albedoImage, kSampled) \
+  X(PELLUCID_BINDING_MATERIAL, 11, materialImage, kSampled) \
+  X(PELLUCID_BINDING_SOURCE, 12, sourceImage, kSampled) \
+  X(PELLUCID_BINDING_HELD, 13, heldImage, kSampled) /* the output's content before the frame */ \
+  X(PELLUCID_BINDING_HISTORY, 14, historyImage, kSampled) \
+  X(PELLUCID_BINDING_PYRAMID, 15, pyramidImage, kSampled) /* the level or levels that are read */ \
+  X(PELLUCID_BINDING_COARSER_LEVELS, 16, coarserLevelsImage, kSampled) /* of upsampling: levels 4 and 5 */ \
+  X(PELLUCID_BINDING_ENTRY_POINTS, 17, entriesImage, kSampled) \
+  X(PELLUCID_BINDING_FOUND_PROBES, 18, foundImage, kSampled) \
+  X(PELLUCID_BINDING_FILTERED_PROBES, 19, filteredProbesImage, kSampled) \
+  X(PELLUCID_BINDING_DESTINATION, 20, destinationImage, kStored) \
+  X(PELLUCID_BINDING_LEVELS, 21, levelsDestination, kStored) /* of the pyramid, written */ \
+  X(PELLUCID_BINDING_ENTRIES_DESTINATION, 22, entriesDestination, kStored) \
+  X(PELLUCID_BINDING_PROBES_DESTINATION, 23, probesImage, kStored) \
+  X(PELLUCID_BINDING_FILTERED_DESTINATION, 24, sharedImage, kStored) \
+  X(PELLUCID_BINDING_BLOCKS, 25, blocksImage, kStored) /* words of the blocks and lists of them */ \
+  X(PELLUCID_BINDING_HIDDEN_IRRADIANCE, 26, hiddenIrradianceImage, kSampled) \
+  X(PELLUCID_BINDING_MOTION, 27, motionImage, kSampled) \
+  X(PELLUCID_BINDING_SHADOW_IMAGES, 28, shadowImage0, kSampled) /* the last ones: one each for as many shadow images as a pass has */
 #ifdef __cplusplus
 #define PELLUCID_BINDING_NUMBER(number, value, name, type) number = value,
 enum PellucidBindingNumber : unsigned { PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER) };
@@ -75,7 +74,6 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
-#define PELLUCID_FLAG_NORMAL 2u
 #define PELLUCID_FLAG_ALBEDO 4u
 #define PELLUCID_FLAG_FRONT_VIEW_Z 8u
 #define PELLUCID_FLAG_BACK_VIEW_Z 16u
@@ -92,7 +90,6 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
-#define PELLUCID_CONSTANT_NORMALS 4
 #define PELLUCID_CONSTANT_LIGHT_TABLES 5
 #define PELLUCID_CONSTANT_ACCUMULATES 7
 #define PELLUCID_CONSTANT_USES 6 // PellucidUse bits that frames may ask of the pipeline, among them:
@@ -107,10 +104,6 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 #define PELLUCID_SHADER_DEPTH_DEVICE 0u
 #define PELLUCID_SHADER_DEPTH_VIEW_Z 1u
 #define PELLUCID_SHADER_DEPTH_DISTANCE 2u
-#define PELLUCID_SHADER_NORMALS_SNORM 0u
-#define PELLUCID_SHADER_NORMALS_UNORM 1u
-#define PELLUCID_SHADER_NORMALS_OCTAHEDRAL 2u
-#define PELLUCID_SHADER_NORMALS_OCTAHEDRAL_UNORM 3u
 #define PELLUCID_SHADER_TRANSMITTANCE_EXP2 0u
 #define PELLUCID_SHADER_TRANSMITTANCE_SINH_EXP 1u
 #define PELLUCID_SHADER_TRANSMITTANCE_LINEAR 4u
@@ -165,7 +158,6 @@ struct Camera {
 
 struct FrameConstants {
   Camera camera;
-  mat4 viewFromNormal; // rotation of the normal image's space into view space
   uvec4 rect;          // x, y, end x, end y
   ivec4 lattice;       // x, y: the image's first pixel, 0..127; z: pattern of samples of cell 0, 0; w: first row of
                        // the filtered probes in their image
@@ -179,7 +171,6 @@ struct FrameConstants {
                                         // of the resolved level 2, zw: of its shares
   uvec4 blocks; // x, y: columns and rows that the rect and PELLUCID_BLOCK_BORDER pixels around it touch; z: first word of their lists; w: 1: groups go by lists
   // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
-  vec4 normalRay[3]; // xyz: in the normal image's space
   vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
   mat4 ambient[3];   // per channel: the form whose value at a normal, 1 is the ambient light's irradiance
   uvec4 lightTables[PELLUCID_LIGHT_TABLES * PELLUCID_LIGHT_ENTRIES / 8]; // entries as halves, the first in the low bits

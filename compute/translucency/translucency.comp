@@ -8,7 +8,6 @@
 #include "translucency/transmission.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
-layout(set = 0, binding = PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(constant_id = PELLUCID_CONSTANT_DEBUG_VIEWS) const bool kDebugViews = false;
 
 // `front`: planar distance of `stored`.
@@ -17,9 +16,7 @@ Surface surfaceAt(ivec2 at, float front, float stored, uint material) {
   float along = -1.0;
   if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH))
     along = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
-  vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL)) normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, at, 0));
-  Surface s = makeSurface(ray, front, along, normal);
+  Surface s = makeSurface(ray, front, along, facetAt(at, material, false));
   s.material = material;
   return s;
 }

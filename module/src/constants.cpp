@@ -121,12 +121,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   const PellucidFrame& f = facts.frame;
   shared::FrameConstants c{};
   c.camera = facts.camera;
-  c.viewFromNormal = f.options.normalsInViewSpace ? glm::mat4(1) : glm::mat4(glm::mat3(facts.viewFromWorld));
-  const glm::mat3 normalFromView = glm::transpose(glm::mat3(c.viewFromNormal));
   const shared::Camera& camera = c.camera;
-  c.normalRay[0] = {normalFromView * glm::vec3(camera.rayBase.x, camera.rayBase.y, camera.range.x), 0};
-  c.normalRay[1] = {normalFromView * glm::vec3(camera.rayX.x, camera.rayX.y, 0), 0};
-  c.normalRay[2] = {normalFromView * glm::vec3(camera.rayY.x, camera.rayY.y, 0), 0};
   const auto along = [](const glm::vec4& ray) {
     const glm::vec2 step = glm::vec2(ray.x + ray.z, ray.y + ray.w);  // at distance 1, as anywhere
     return glm::length(step) > 0 ? glm::normalize(step) : glm::vec2(0);
