@@ -29,8 +29,6 @@ constexpr std::array kImageFields = {
                PELLUCID_BINDING_HIDDEN_IRRADIANCE, PELLUCID_FLAG_HIDDEN_IRRADIANCE},
     ImageField{PELLUCID_RESOURCE_IRRADIANCE, "irradiance", &PellucidFrame::irradiance, true,
                PELLUCID_BINDING_SOURCE, 0},
-    ImageField{PELLUCID_RESOURCE_NORMAL, "normal", &PellucidFrame::normal, false, PELLUCID_BINDING_NORMAL,
-               PELLUCID_FLAG_NORMAL},
     ImageField{PELLUCID_RESOURCE_ALBEDO, "albedo", &PellucidFrame::albedo, false, PELLUCID_BINDING_ALBEDO,
                PELLUCID_FLAG_ALBEDO},
     ImageField{PELLUCID_RESOURCE_MATERIAL, "material", &PellucidFrame::material, true,

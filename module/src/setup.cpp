@@ -96,7 +96,7 @@ Setup::Setup(const Inputs& inputs)
   gatherSamples = whyNotGathered ? 0 : frame.options.gatherSamples;
   gatherSpacing = spacingOf(frame);
   gathers = translucency() && gatherSamples > 0 && !debug();
-  shapes = gathers && diffuses && has(PELLUCID_RESOURCE_NORMAL);
+  shapes = gathers && diffuses;
   constexpr float kEntriesPerLength = 2;
   longestEntrySide = shortestLength / (kEntriesPerLength * 1000 * frame.metersPerUnit);
 }
