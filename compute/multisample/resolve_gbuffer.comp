@@ -1,5 +1,5 @@
 // For engines with a multisampled G-buffer: a dispatch before the module's, which makes the frame's images of one sample. Compile it
-// with -I compute. Define PELLUCID_NO_BACK_DEPTH, PELLUCID_NO_NORMAL or PELLUCID_NO_ALBEDO where there is no such image.
+// with -I compute. Define PELLUCID_NO_BACK_DEPTH or PELLUCID_NO_ALBEDO where there is no such image.
 //
 // The dispatch keeps the samples of a pixel's most frequent material. The irradiance's alpha becomes the part of the samples with
 // any material, and Pellucid's output keeps it. Clear the output to 0, and blend it over specular light with SRC_ALPHA and ONE.
@@ -18,7 +18,7 @@ layout(push_constant) uniform Pass {
 layout(set = 0, binding = 0) uniform texture2DMS frontDepthSamples;
 layout(set = 0, binding = 1) uniform utexture2DMS materialSamples;
 layout(set = 0, binding = 2) uniform texture2DMS irradianceSamples;
-// The device has shaderStorageImageWriteWithoutFormat. Depths, normals and materials are copied, and have the formats of the samples.
+// The device has shaderStorageImageWriteWithoutFormat. Depths and materials are copied, and have the formats of the samples.
 layout(set = 0, binding = 3) uniform writeonly image2D frontDepth;
 layout(set = 0, binding = 4) uniform writeonly uimage2D material;
 layout(set = 0, binding = 5) uniform writeonly image2D irradiance; // alpha: part of the samples with a material
@@ -26,13 +26,9 @@ layout(set = 0, binding = 5) uniform writeonly image2D irradiance; // alpha: par
 layout(set = 0, binding = 6) uniform texture2DMS backDepthSamples;
 layout(set = 0, binding = 7) uniform writeonly image2D backDepth;
 #endif
-#ifndef PELLUCID_NO_NORMAL
-layout(set = 0, binding = 8) uniform texture2DMS normalSamples;
-layout(set = 0, binding = 9) uniform writeonly image2D normal;
-#endif
 #ifndef PELLUCID_NO_ALBEDO
-layout(set = 0, binding = 10) uniform texture2DMS albedoSamples;
-layout(set = 0, binding = 11) uniform writeonly image2D albedo;
+layout(set = 0, binding = 8) uniform texture2DMS albedoSamples;
+layout(set = 0, binding = 9) uniform writeonly image2D albedo;
 #endif
 
 vec3 meanOf(texture2DMS image, ivec2 pixel, uint samples) {
@@ -53,9 +49,6 @@ void main() {
   imageStore(irradiance, pixel, vec4(meanOf(irradianceSamples, pixel, choice.samples), choice.coverage));
 #ifndef PELLUCID_NO_BACK_DEPTH
   imageStore(backDepth, pixel, texelFetch(backDepthSamples, pixel, choice.first));
-#endif
-#ifndef PELLUCID_NO_NORMAL
-  imageStore(normal, pixel, texelFetch(normalSamples, pixel, choice.first));
 #endif
 #ifndef PELLUCID_NO_ALBEDO
   imageStore(albedo, pixel, vec4(meanOf(albedoSamples, pixel, choice.samples), 1.0));
