@@ -27,7 +27,6 @@ layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_SHADOWS) readonly 
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIALS) readonly buffer Materials {
   MaterialConstants materials[];
 };
-layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_NORMAL) uniform texture2D normalImage;
 layout(set = 0, binding = PLANNED_BINDINGS + PELLUCID_BINDING_MATERIAL) uniform utexture2D materialImage;
 #define SHADOW_BINDING PLANNED_BINDINGS + PELLUCID_BINDING_SHADOW_IMAGES
 #include "frame/shadow_images.glsl"
@@ -55,11 +54,8 @@ void main() {
   if (isHole(uv, alpha) || !sameObject || !isNearer(front, gl_FragCoord.z)) discard;
   if (material == 0u || material > frame.flags.y) discard;
 
-  vec3 normal = vec3(0.0);
-  if (hasFlag(PELLUCID_FLAG_NORMAL))
-    normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
   float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
-  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, normal);
+  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, facetAt(pixel, material, false));
   s.material = material;
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i)
