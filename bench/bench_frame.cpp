@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "common/parallel.h"
+#include "reference/surface.h"
 
 namespace pellucid::bench {
 
@@ -60,13 +62,28 @@ Image outputOf(Device& device, const Variant& variant) {
   return variant.output();
 }
 
+std::shared_ptr<const GpuImage> normalsOf(Device& device, const Capture& capture) {
+  const reference::SurfaceReader surfaces(capture);
+  Image normals(capture.width, capture.height, 3);
+  parallelRows(capture.height, 0, [&](int y) {
+    for (int x = 0; x < capture.width; ++x)
+      if (const auto surface = surfaces.at(x, y))
+        for (int i = 0; i < 3; ++i) normals.at(x, y)[i] = static_cast<float>(surface->normal[i]);
+  });
+  auto image = std::make_shared<GpuImage>(device, capture.width, capture.height, VK_FORMAT_R8G8B8A8_SNORM);
+  image->upload(normals);
+  return image;
+}
+
 BenchFrame::BenchFrame(Device& device, const Context& context, const Capture& capture,
                        const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-                       const std::shared_ptr<const InputImages>& inputs)
+                       const std::shared_ptr<const InputImages>& inputs,
+                       const std::shared_ptr<const GpuImage>& normals)
     : device_(device),
       width_(capture.width),
       height_(capture.height),
       material_(materials.at(0)),
+      normals_(normals),
       run_(inputs ? FrameRun(device, context, capture, materials, settings, inputs)
                   : FrameRun(device, context, capture, materials, settings)),
       constants_(device, run_.plan().constantsSize,

@@ -63,15 +63,22 @@ struct Variant {
 // The output of a run of the variant.
 harness::Image outputOf(harness::Device& device, const Variant& variant);
 
+// Unit normals in view space, of the surfaces that front depths show, 8 bits a component: what published passes read of a
+// G-buffer.
+std::shared_ptr<const harness::GpuImage> normalsOf(harness::Device& device, const harness::Capture& capture);
+
 class BenchFrame {
 public:
-  // `inputs`: the capture's on the device, if frames share them.
+  // `inputs`: the capture's on the device, if frames share them. `normals`: for published passes, as normalsOf() makes
+  // them.
   BenchFrame(harness::Device& device, const harness::Context& context, const harness::Capture& capture,
              const std::vector<PellucidMaterial>& materials, const harness::ReplaySettings& settings,
-             const std::shared_ptr<const harness::InputImages>& inputs = nullptr);
+             const std::shared_ptr<const harness::InputImages>& inputs = nullptr,
+             const std::shared_ptr<const harness::GpuImage>& normals = nullptr);
 
   harness::Device& device() const { return device_; }
   const PellucidFrame& images() const { return run_.frame(); }
+  const harness::GpuImage& normals() const { return *normals_; }
   const PellucidMaterial& material() const { return material_; }  // the first
   int width() const { return width_; }
   int height() const { return height_; }
@@ -96,6 +103,7 @@ private:
   harness::Device& device_;
   int width_, height_;
   PellucidMaterial material_;
+  std::shared_ptr<const harness::GpuImage> normals_;
   harness::FrameRun run_;
   harness::HostBuffer constants_;
   std::vector<PellucidBinding> bindings_;  // of the first dispatch

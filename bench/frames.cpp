@@ -136,12 +136,11 @@ public:
     // Every frame would multiply by it once; the errors do.
     withoutAlbedo_ = capture_;
     withoutAlbedo_.albedo = {};
-    ReplaySettings formats;
-    formats.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;  // four bytes, as those of engines' G-buffers
-    inputs_ = std::make_shared<InputImages>(device, withoutAlbedo_, formats);
+    inputs_ = std::make_shared<InputImages>(device, withoutAlbedo_, ReplaySettings());
     why_ = whyNotRendered(capture_, materials_);
     if (!why_.empty()) return;
-    others_ = frame(transmittanceSettings());
+    others_ = std::make_shared<BenchFrame>(device, context, withoutAlbedo_, materials_, transmittanceSettings(), inputs_,
+                                           normalsOf(device, capture_));
     diffusionsOfOthers_ = baselines(others_);
   }
 
@@ -163,8 +162,7 @@ public:
   }
 
 private:
-  std::shared_ptr<const BenchFrame> frame(ReplaySettings settings) const {
-    settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
+  std::shared_ptr<const BenchFrame> frame(const ReplaySettings& settings) const {
     return std::make_shared<BenchFrame>(device_, context_, withoutAlbedo_, materials_, settings, inputs_);
   }
   static ReplaySettings alone(PellucidFeatureBits feature) {
@@ -260,8 +258,7 @@ private:
     }
   }
 
-  nlohmann::json flickerOf(const Variant& still, ReplaySettings settings) const {
-    settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
+  nlohmann::json flickerOf(const Variant& still, const ReplaySettings& settings) const {
     Capture linear = *turned_;
     linear.albedo = {};
     const Variant turned = moduleVariant(

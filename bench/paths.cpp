@@ -101,7 +101,8 @@ private:
   Method published(const std::string& name) {
     return {name, [=, this](const Capture& capture) {
               const auto frame =
-                  std::make_shared<BenchFrame>(device_, context_, capture, materials_, transmittanceSettings());
+                  std::make_shared<BenchFrame>(device_, context_, capture, materials_, transmittanceSettings(), nullptr,
+                                               normalsOf(device_, capture));
               const std::vector<WholeFrame> all = fastestWholeFrames(frame);
               const auto found =
                   std::find_if(all.begin(), all.end(), [&](const WholeFrame& w) { return w.variant.name == name; });
@@ -149,7 +150,6 @@ void timeAccumulation(Device& device, const Context& context, const FrameSource&
   const std::string frame = source.name + ", " + std::to_string(capture.width) + "x" + std::to_string(capture.height);
   ReplaySettings settings;
   settings.translucency.gatherSamples = kDefaultGatherSamples;
-  settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   settings.anchor = visibleMiddle(capture);
   for (const bool accumulates : {false, true}) {
     settings.reuse = accumulates ? PELLUCID_REUSE_ACCUMULATE : PELLUCID_REUSE_NONE;

@@ -85,7 +85,6 @@ ReplaySettings translucencyAlone() {
   ReplaySettings settings = thesisSettings();
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
   settings.transmittance = TransmittanceChoice::Material;
-  settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   return settings;
 }
 
@@ -95,7 +94,7 @@ constexpr VkDescriptorType kRead = VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
 constexpr VkDescriptorType kWrite = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 
 // Translucency of camera-space thickness as separate dispatches, the way the thesis (4.7.2) first has it. The
-// frame: device depths, normals, back depth, at most one shadow image, translucency alone with 1.
+// frame: device depths, back depth, at most one shadow image, translucency alone with 1.
 class Steps {
 public:
   explicit Steps(const std::shared_ptr<const BenchFrame>& frame)
@@ -142,13 +141,13 @@ public:
 
 private:
   static std::vector<VkDescriptorType> transmittanceTypes() {
-    return {kUniform, kBuffer, kBuffer, kBuffer, kRead, kRead, kRead, kRead, kRead, kWrite};
+    return {kUniform, kBuffer, kBuffer, kBuffer, kRead, kRead, kRead, kRead, kWrite};
   }
   void transmit(VkCommandBuffer commandBuffer, const ComputePass& pass, const GpuImage& chordOrBack) const {
     const PellucidFrame& f = frame_->images();
     dispatch(commandBuffer, pass,
              {frame_->planned(PELLUCID_BINDING_LIGHTS), frame_->planned(PELLUCID_BINDING_SHADOWS),
-              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(), f.normal,
+              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(),
               f.material, frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
   }
   void dispatch(VkCommandBuffer commandBuffer, const ComputePass& pass,
@@ -268,7 +267,6 @@ private:
     addLight(passes, view, front);
 
     ReplaySettings whole;
-    whole.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
     const auto inputs = std::make_shared<InputImages>(device_, capture, whole);
     const auto frame = [&](const ReplaySettings& settings) {
       return std::make_shared<BenchFrame>(device_, context_, capture, materials, settings, inputs);

@@ -604,9 +604,9 @@ def as_data(samples):
                  (scene.render, "use_overwrite", True), (scene.render, "use_file_extension", False),
                  (settings, "file_format", "OPEN_EXR_MULTILAYER"), (settings, "color_depth", "32"),
                  (settings, "exr_codec", "ZIP"), (layer, "use_pass_emit", True),
-                 (layer, "use_pass_z", True), (layer, "use_pass_normal", True),
-                 (layer, "use_pass_diffuse_direct", True), (layer, "use_pass_diffuse_color", True),
-                 (layer, "use_pass_material_index", True), (layer, "use_pass_combined", True)):
+                 (layer, "use_pass_z", True), (layer, "use_pass_diffuse_direct", True),
+                 (layer, "use_pass_diffuse_color", True), (layer, "use_pass_material_index", True),
+                 (layer, "use_pass_combined", True)):
         yield
 
 
@@ -844,7 +844,6 @@ def capture(folder, stem, options):
         "backDepth": {"file": back, "channel": depth, "encoding": "viewZ"},
         "irradiance": {"file": file, "channels": layer_channels("DiffDir.R", "DiffDir.G", "DiffDir.B"),
                        "scale": math.pi},
-        "normal": {"file": file, "channels": layer_channels("Normal.X", "Normal.Y", "Normal.Z"), "space": "world"},
         "albedo": albedo or color,
         "material": {"file": file, "channel": layer_channels("IndexMA.X")[0], "map": material_map}}
     if mixed:

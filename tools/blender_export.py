@@ -58,7 +58,6 @@ def buffers(layer, file, materials):
     indices = {"0": 0, **{str(m.pass_index): i + 1 for i, m in enumerate(materials)}}
     return {"frontDepth": passed("Depth", "Z", encoding="viewZ"),
             "irradiance": passed("DiffDir", "RGB", scale=math.pi),  # Diffuse Direct is E / pi
-            "normal": passed("Normal", "XYZ", space="world"),
             "albedo": passed("DiffCol", "RGB"),
             "material": passed("IndexMA", "X", map=indices)}
 

@@ -16,7 +16,6 @@ import sys
 TEXTURES = {
     "frontDepth": "SceneDepth",
     "irradiance": "DiffuseLighting",
-    "normal": "GBufferNormal",
     "albedo": "GBufferAlbedo",
     "material": "GBufferMaterialId",
     "shadowMap0": "SunShadowMap",
@@ -38,7 +37,6 @@ BUFFERS = {
     "frontDepth": {"channel": "R", "encoding": "device"},
     "backDepth": {"channel": "R", "encoding": "device"},
     "irradiance": {"channels": ["R", "G", "B"]},
-    "normal": {"channels": ["R", "G", "B"], "space": "world"},
     "albedo": {"channels": ["R", "G", "B"]},
     "material": {"channel": "R"},
 }

@@ -39,12 +39,12 @@ Image evaluate(const Capture& capture, const Transmitted& transmitted) {
   for (int y = 0; y < capture.height; ++y)
     for (int x = 0; x < capture.width; ++x) {
       const auto surface = surfaces.at(x, y);
-      if (!surface || !surface->normal ||
+      if (!surface ||
           capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
                            static_cast<size_t>(x)] == 0)
         continue;
       const glm::dvec3 position = surfaces.worldFromView() * glm::dvec4(surface->position, 1);
-      const glm::dvec3 normal = glm::dmat3(surfaces.worldFromView()) * *surface->normal;
+      const glm::dvec3 normal = glm::dmat3(surfaces.worldFromView()) * surface->normal;
       for (const Light& light : capture.lights) {
         const glm::dvec3 t = transmitted(position, normal, light, surfaces.millimetersPerUnit());
         for (int c = 0; c < 3; ++c) result.at(x, y)[c] += static_cast<float>(t[c]);
@@ -134,7 +134,8 @@ Capture ear() {
 void requireRightTransmittance(Device& device, const Context& context, const PellucidMaterial& material) {
   const Capture capture = ear();
   const auto frame = std::make_shared<const BenchFrame>(device, context, capture, std::vector{material},
-                                                        transmittanceSettings());
+                                                        transmittanceSettings(), nullptr,
+                                                        normalsOf(device, capture));
   for (const Case& c : kCases) {
     const Slab transmittance = c.slab(material);
     const Variant pass = c.pass(frame).variant;

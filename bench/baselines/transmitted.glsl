@@ -9,7 +9,7 @@
 // The source is the irradiance; pass.value.x: lights.
 layout(set = 0, binding = 6) readonly buffer Lights { LightConstants lights[]; };
 layout(set = 0, binding = 7) readonly buffer Shadows { ShadowConstants shadows[]; };
-layout(set = 0, binding = 8) uniform texture2D normalImage;
+layout(set = 0, binding = 8) uniform texture2D normalImage; // view space
 layout(set = 0, binding = 9) uniform texture2D shadowImage0;
 layout(set = 0, binding = 10) uniform texture2D shadowImage1;
 layout(set = 0, binding = 11) uniform texture2D shadowImage2;
@@ -37,7 +37,7 @@ bool readReceiver(ivec2 pixel, out Receiver receiver) {
   receiver = Receiver(vec3(0.0), vec3(0.0));
   if (isSkipped(pixel)) return false;
   ViewRay ray = viewRay(frame.camera, pixel);
-  vec3 normal = mat3(frame.viewFromNormal) * decodeNormal(texelFetch(normalImage, pixel, 0));
+  vec3 normal = texelFetch(normalImage, pixel, 0).xyz;
   // A normal of no length stays one; a pixel without depth lies at the eye, where no map sees it.
   receiver = Receiver(ray.origin + max(planarAt(pixel), 0.0) * ray.direction,
                       normal * inversesqrt(max(dot(normal, normal), 1.0e-8)));

@@ -103,7 +103,7 @@ TransmittancePass transmittance(const std::shared_ptr<const BenchFrame>& frame, 
   const auto record = [=](VkCommandBuffer commandBuffer) {
     const PellucidFrame& f = frame->images();
     std::vector<Resource> more = {frame->planned(PELLUCID_BINDING_LIGHTS),
-                                  frame->planned(PELLUCID_BINDING_SHADOWS), f.normal};
+                                  frame->planned(PELLUCID_BINDING_SHADOWS), frame->normals().use()};
     // Bindings that no light names hold any image.
     for (uint32_t i = PELLUCID_BINDING_SHADOW_IMAGES; i < PELLUCID_BINDING_SHADOW_IMAGES + kMaps; ++i)
       more.push_back(frame->isPlanned(i) ? frame->planned(i) : Resource(f.frontDepth));
@@ -159,7 +159,6 @@ std::vector<Variant> baselines(const std::shared_ptr<const BenchFrame>& frame) {
 ReplaySettings transmittanceSettings() {
   ReplaySettings settings;
   settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.normalFormat = VK_FORMAT_R8G8B8A8_SNORM;
   // With camera thickness the plan keeps lights and maps apart, whatever kinds they are.
   settings.translucency.cameraThickness = 1;
   return settings;
@@ -177,7 +176,6 @@ std::string whyNotRendered(const Capture& capture, const std::vector<PellucidMat
   const float* d = materials[0].burleyDistance;
   if (materials[0].gaussianCount == 0 || !(std::min({d[0], d[1], d[2]}) > 0))
     return "they need a material with Burley distances";
-  if (capture.normal.empty()) return "they need normals";
   if (maps == 0 || maps > kMaps)
     return "they read one to four shadow maps, and it has " + std::to_string(maps);
   if (last >= kMaps)

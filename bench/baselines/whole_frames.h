@@ -27,8 +27,8 @@ struct TransmittancePass {
   Source image;  // what the pass writes; irradiance where there is no material
 };
 
-// Settings whose frame both passes bind: the frame of `settings` has its lights, maps and normals in the
-// plan's first dispatch.
+// Settings whose frame both passes bind: the frame of `settings` has its lights and maps in the plan's first
+// dispatch. The frame also has normals.
 harness::ReplaySettings transmittanceSettings();
 
 // Jimenez et al. 2010: T(d) of six Gaussians.
@@ -37,8 +37,7 @@ TransmittancePass gaussianTransmittance(const std::shared_ptr<const BenchFrame>&
 // HDRP: T(d) of Burley's profile (Christensen & Burley 2015).
 TransmittancePass burleyTransmittance(const std::shared_ptr<const BenchFrame>& frame);
 
-// Why these passes cannot do a capture: they have one material, at most four shadow maps, and normals. Empty:
-// they can.
+// Why these passes cannot do a capture: they have one material and at most four shadow maps. Empty: they can.
 std::string whyNotRendered(const harness::Capture& capture, const std::vector<PellucidMaterial>& materials);
 
 // A whole frame, and which of baselines(), by name, its diffusion is.
@@ -48,7 +47,7 @@ struct WholeFrame {
 };
 
 // Jimenez et al. 2010 and 2015, the six Gaussians of 2009 in place of the latter, and HDRP's, in the sizes
-// that are in use. `frame`: of transmittanceSettings().
+// that are in use. `frame`: of transmittanceSettings(), with normals.
 std::vector<WholeFrame> wholeFrames(const std::shared_ptr<const BenchFrame>& frame);
 // The fastest of Jimenez et al.'s and the fastest of HDRP's.
 std::vector<WholeFrame> fastestWholeFrames(const std::shared_ptr<const BenchFrame>& frame);

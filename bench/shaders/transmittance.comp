@@ -15,10 +15,9 @@ layout(set = 0, binding = 2) readonly buffer Shadows { ShadowConstants shadows[]
 layout(set = 0, binding = 3) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = 4) uniform texture2D frontImage;
 layout(set = 0, binding = 5) uniform texture2D thicknessOrBackImage;
-layout(set = 0, binding = 6) uniform texture2D normalImage;
-layout(set = 0, binding = 7) uniform utexture2D materialImage;
-layout(set = 0, binding = 8) uniform texture2D shadowImage;
-layout(set = 0, binding = 9, rgba16f) uniform writeonly image2D transmittedImage;
+layout(set = 0, binding = 6) uniform utexture2D materialImage;
+layout(set = 0, binding = 7) uniform texture2D shadowImage;
+layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D transmittedImage;
 
 float shadowTexel(uint image, ivec2 texel) { return texelFetch(shadowImage, texel, 0).x; }
 vec4 shadowTexels(uint image, ivec2 a, ivec2 b, ivec2 c, ivec2 d) {

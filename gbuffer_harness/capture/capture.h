@@ -125,8 +125,6 @@ struct Capture {
   // RG: what a surface's place in the image has changed by since an earlier frame, in parts of width and height; empty: nothing
   // moved. Manifests do not hold it.
   Image motion;
-  Image normal;      // XYZ
-  bool normalsInViewSpace = false;
   Image albedo;                        // RGB
   std::vector<std::uint8_t> material;  // required; 0 none, i: materials[i - 1]
 

@@ -386,14 +386,7 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
     field->allowKeys({"file", "part", "channels", "constant", "scale"});
     manifest.albedo = read(*field, 3);
   }
-  if (const auto field = buffers.find("normal")) {
-    field->allowKeys({"file", "part", "channels", "space", "encoding", "constant"});
-    if (const auto encoding = field->find("encoding"))
-      manifest.normalIsUnorm = encoding->choice({"vector", "unorm"}) == 1;
-    if (const auto space = field->find("space"))
-      manifest.capture.normalsInViewSpace = space->choice({"world", "view"}) == 1;
-    manifest.normal = read(*field, 3);
-  }
+  manifest.hasNormal = buffers.has("normal");
 
   const Field material = buffers["material"];
   material.allowKeys({"file", "part", "channel", "map", "constant"});

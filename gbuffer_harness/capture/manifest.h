@@ -49,11 +49,11 @@ struct Manifest {
   Capture capture;  // everything but the images and the size
 
   BufferSource frontDepth, irradiance, material;
-  std::optional<BufferSource> backDepth, hiddenIrradiance, normal, albedo, truth, truthStandardError;
+  std::optional<BufferSource> backDepth, hiddenIrradiance, albedo, truth, truthStandardError;
   std::optional<BufferSource> irradianceTimes, truthTimes;  // by which reading multiplies the other
   std::vector<std::vector<ShadowSources>> shadowMaps;       // per light, as Light::shadowMaps
   MaterialMap materialMap;
-  bool normalIsUnorm = false;             // 0 .. 1 for -1 .. 1
+  bool hasNormal = false;                 // a buffer of normals, which nothing reads
   bool irradianceIncludesAlbedo = false;  // by which reading divides it
 };
 

@@ -207,7 +207,6 @@ Capture readImages(const Manifest& manifest) {
   loader.want(manifest.irradiance, capture.irradiance, 3, 0, true);
   if (manifest.hiddenIrradiance)
     loader.want(*manifest.hiddenIrradiance, capture.hiddenIrradiance, 3, 0, true);
-  if (manifest.normal) loader.want(*manifest.normal, capture.normal, 3, 0, true);
   if (manifest.albedo) loader.want(*manifest.albedo, capture.albedo, 3, 0, true);
   loader.want(manifest.material, material, 1, kOutside, true);
   if (manifest.truth) loader.want(*manifest.truth, capture.truth->image, 3, 0, true);
@@ -249,8 +248,6 @@ Capture readImages(const Manifest& manifest) {
         capture.lights[i].shadowMaps[k].casterMaterial =
             materialIndices(manifest, *sources.casterMaterial, sources.casterMaterialMap, *caster++);
   if (manifest.irradianceIncludesAlbedo) divideByAlbedo(manifest, capture);
-  if (manifest.normalIsUnorm)
-    for (float& value : capture.normal.data) value = 2 * value - 1;
   return capture;
 }
 

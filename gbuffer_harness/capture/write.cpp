@@ -134,10 +134,6 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   buffers["irradiance"] = screen.add(capture.irradiance, "irradiance", "RGB", format);
   if (!capture.hiddenIrradiance.empty())
     buffers["hiddenIrradiance"] = screen.add(capture.hiddenIrradiance, "hidden", "RGB", format);
-  if (!capture.normal.empty()) {
-    buffers["normal"] = screen.add(capture.normal, "normal", "XYZ", format);
-    buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";
-  }
   if (!capture.albedo.empty()) buffers["albedo"] = screen.add(capture.albedo, "albedo", "RGB", format);
   buffers["material"] = screen.add(material, "material", "I", ExrFormat::Uint);
   if (capture.truth) manifest["truth"] = truthJson(*capture.truth, screen, format);

@@ -7,7 +7,7 @@
 
 namespace pellucid::harness {
 
-// Storage of irradiance, normal, albedo and truth. Depths are always 32-bit floats: half floats have
+// Storage of irradiance, albedo and truth. Depths are always 32-bit floats: half floats have
 // 11 bits, a millimeter in two meters.
 enum class ColorFormat { Half, Float };
 

@@ -32,7 +32,6 @@ void setCommon(const CaptureOptions& options, Parameters& to) {
   to.width = width;
   to.height = height;
   to.infiniteFar = options.infiniteFar;
-  to.normalsInViewSpace = options.viewNormals;
   to.reversedZ = options.reversedZ.value_or(to.reversedZ);
   to.depthEncoding = options.depth.value_or(to.depthEncoding);
   to.shadowEncoding = options.shadowDepth.value_or(to.shadowEncoding);
@@ -88,7 +87,6 @@ void addCommonOptions(const Command& command, CaptureOptions& options) {
   command.flag("--reversed-z,!--forward-z", options.reversedZ,
                "device depth 1 at the near plane (default: a model yes, a scene no)");
   command.flag("--infinite-far", options.infiniteFar, "no far plane (perspective only)");
-  command.flag("--view-normals", options.viewNormals, "normals in view instead of world space");
   command.choice("--depth", options.depth,
                  {{"viewz", PELLUCID_DEPTH_VIEW_Z}, {"device", PELLUCID_DEPTH_DEVICE}},
                  "viewz or device (default: a model device, a scene viewz)");

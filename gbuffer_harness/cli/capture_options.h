@@ -26,7 +26,7 @@ inline constexpr const char* kLightSyntax =
 // As given. Options of both kinds of scene stand before the two; absent ones have each kind's own default.
 struct CaptureOptions {
   std::string size, device;  // "": of a model whose camera has an aspect 512 high, else 512x512
-  bool infiniteFar = false, viewNormals = false;
+  bool infiniteFar = false;
   std::optional<bool> reversedZ, orthographic;
   std::optional<PellucidDepthEncoding> depth, shadowDepth;
   std::optional<int> shadowSize;

@@ -149,8 +149,6 @@ std::vector<std::string> missingParts(const Capture& capture,
     missing.push_back(
         "no backDepth: no camera-space thickness; lights without a shadow map and environments add no "
         "translucency, and gathers let thin parts return as much light as thick ones");
-  if (capture.normal.empty())
-    missing.push_back("no normal: the angle between view and light takes the place of -N.L");
   if (capture.albedo.empty()) missing.push_back("no albedo: the output is not multiplied by a surface color");
   const bool solids = showsSolids(capture, materials);
   for (std::size_t i = 0; i < capture.lights.size(); ++i) {
@@ -192,11 +190,8 @@ private:
 };
 
 void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::string>& sentences) {
-  const bool hasBack = !capture.backDepth.image.empty(), hasNormal = !capture.normal.empty();
-  glm::dmat3 viewFromNormal(1);
-  if (!capture.normalsInViewSpace) viewFromNormal = glm::dmat3(reference::toMatrix(capture.viewFromWorld));
-  std::size_t total = 0, noFront = 0, noBack = 0, reversed = 0, notUnit = 0, facingAway = 0;
-  std::size_t badIrradiance = 0, badAlbedo = 0;
+  const bool hasBack = !capture.backDepth.image.empty();
+  std::size_t total = 0, noFront = 0, noBack = 0, reversed = 0, badIrradiance = 0, badAlbedo = 0;
   for (int y = 0; y < capture.height; ++y) {
     for (int x = 0; x < capture.width; ++x) {
       if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
@@ -217,15 +212,6 @@ void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::
         constexpr double kRounding = 1e-5;  // both depths may be floats that went through a matrix
         reversed += front && back && *back < *front * (1 - kRounding);
       }
-      if (hasNormal) {
-        const float* n = capture.normal.at(x, y);
-        const glm::dvec3 normal(n[0], n[1], n[2]);
-        constexpr double kUnit = 0.01;  // 8-bit encodings reach 0.004
-        notUnit += !(std::abs(glm::length(normal) - 1) <= kUnit);
-        if (front)
-          facingAway += glm::dot(viewFromNormal * normal,
-                                 camera.rayThrough(camera.position({x + 0.5, y + 0.5}, *front))) > 0;
-      }
     }
   }
   Warnings warnings(sentences);
@@ -233,9 +219,6 @@ void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::
   warnings.count(noFront, total, "material pixels have no front depth");
   warnings.count(noBack, total, "material pixels have no back depth");
   warnings.count(reversed, total, "material pixels have their back depth in front of the front depth");
-  warnings.count(notUnit, total, "normals are not of length 1");
-  if (20 * facingAway > total)  // interpolated normals do it at silhouettes, a few percent
-    warnings.count(facingAway, total, "normals point away from the camera: is \"space\" right?");
   warnings.count(badIrradiance, total, "material pixels have an irradiance that is negative or not finite");
   warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");
 }
@@ -269,10 +252,6 @@ Json describe(const std::filesystem::path& path) {
   buffers["irradiance"] = imageJson(manifest.irradiance, capture.irradiance);
   if (manifest.hiddenIrradiance)
     buffers["hiddenIrradiance"] = imageJson(*manifest.hiddenIrradiance, capture.hiddenIrradiance);
-  if (manifest.normal) {
-    buffers["normal"] = imageJson(*manifest.normal, capture.normal);
-    buffers["normal"]["space"] = capture.normalsInViewSpace ? "view" : "world";
-  }
   if (manifest.albedo) buffers["albedo"] = imageJson(*manifest.albedo, capture.albedo);
   buffers["material"] = sourceJson(manifest.material);
   buffers["material"]["pixels"] =
@@ -294,6 +273,8 @@ Json describe(const std::filesystem::path& path) {
   json["materials"] = materialsJson(capture, materials);
   json["missing"] = missingParts(capture, materials);
   std::vector<std::string> warnings;
+  if (manifest.hasNormal)
+    warnings.push_back("the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");
   checkConventions(capture, materials, warnings);
   checkPixels(capture, camera, warnings);
   for (auto& sentences : {coarseTables(capture), thinBodies(capture, materials)})

@@ -92,8 +92,8 @@ void addInitCommand(const Command& app) {
       command.group("Buffers: a layer, a channel, or a file without extension, in place of the guess");
   const std::pair<const char*, Role> roles[] = {
       {"--front-depth", Role::FrontDepth}, {"--back-depth", Role::BackDepth},
-      {"--irradiance", Role::Irradiance},  {"--normal", Role::Normal},
-      {"--albedo", Role::Albedo},          {"--material-index", Role::Material}};
+      {"--irradiance", Role::Irradiance},  {"--albedo", Role::Albedo},
+      {"--material-index", Role::Material}};
   for (const auto& [name, role] : roles) buffers.option(name, options->roles[role]);
   const Command meanings = command.group("Meaning");
   meanings.option("--depth", options->depth, "viewz or device (default: device where all are within 0 .. 1)")

@@ -23,7 +23,7 @@ using spirv_cross::Resource;
 
 // Names by the id of a specialization constant; the shaders hold none.
 constexpr std::pair<uint32_t, const char*> kConstantNames[] = {
-    {0, "debugViews"}, {4, "normalEncoding"}, {5, "lightTables"}, {6, "uses"}, {7, "accumulates"}};
+    {0, "debugViews"}, {5, "lightTables"}, {6, "uses"}, {7, "accumulates"}};
 
 std::string constantName(const std::string& pipeline, uint32_t id) {
   for (const auto& [named, name] : kConstantNames)

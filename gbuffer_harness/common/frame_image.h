@@ -15,7 +15,6 @@ inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resourc
       {PELLUCID_RESOURCE_BACK_DEPTH, &frame.backDepth},
       {PELLUCID_RESOURCE_IRRADIANCE, &frame.irradiance},
       {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE, &frame.hiddenIrradiance},
-      {PELLUCID_RESOURCE_NORMAL, &frame.normal},
       {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
       {PELLUCID_RESOURCE_MATERIAL, &frame.material},
       {PELLUCID_RESOURCE_MOTION, &frame.motion},

@@ -40,14 +40,13 @@ private:
   void doubt(const std::string& key, const std::string& sentence);
   void addDepths();
   void addIrradiance();
-  void addNormal();
+  void leaveOutNormals();
   void addMaterial();
   void addBlackness();
   void addCamera();
   void addMissing();
   Image read(Role role);
   DepthFacts depthFacts() const;
-  double facing(const Image& normal, bool unorm, const Matrix& viewFromNormal) const;
 
   const std::vector<std::filesystem::path>& files_;
   const std::filesystem::path& folder_;
@@ -175,45 +174,11 @@ void Builder::addIrradiance() {
   say(Role::Albedo, "");
 }
 
-// The part of the normals, within -1 .. 1, that face the camera.
-double Builder::facing(const Image& normal, bool unorm, const Matrix& viewFromNormal) const {
-  const glm::dmat3 rotation(toGlm(viewFromNormal));
-  const reference::Camera camera(camera_.clipFromView, width_, height_);
-  std::size_t count = 0, facing = 0;
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      const float* v = normal.at(x, y);
-      glm::dvec3 n(v[0], v[1], v[2]);
-      if (unorm) n = 2.0 * n - 1.0;
-      const float depth = *front_.at(x, y);
-      const bool isEmpty = depth_.isDevice ? depth == 0 || depth == 1 : !(depth > 0 && depth < kLeastNoDepth);
-      if (isEmpty || !(glm::length(n) > 0.5)) continue;
-      const glm::dvec3 ray = camera.rayThrough(camera.position({x + 0.5, y + 0.5}, 1));
-      ++count;
-      facing += glm::dot(glm::normalize(rotation * n), ray) < 0.1;  // smoothed normals turn away a little
-    }
-  return count == 0 ? 0 : static_cast<double>(facing) / static_cast<double>(count);
-}
-
-void Builder::addNormal() {
-  if (!guesses_.count(Role::Normal)) return;
-  const Image normal = read(Role::Normal);
-  const bool unorm = *std::min_element(normal.data.begin(), normal.data.end()) >= 0;
-  const double view = facing(normal, unorm, kIdentity), world = facing(normal, unorm, camera_.viewFromWorld);
-  const bool isView = view > world || (view == world && !camera_.isPlaced);
-  Json json = sourceOf(Role::Normal);
-  json["space"] = isView ? "view" : "world";
-  if (unorm) json["encoding"] = "unorm";
-  result_.json["buffers"]["normal"] = json;
-  const double best = std::max(view, world);
-  say(Role::Normal, std::string(isView ? "view space" : "world space") + (unorm ? ", 0..1 for -1..1" : "") +
-                        ", " + number(100 * best) + " % face the camera");
-  constexpr double kEnough = 0.95;
-  if (best >= kEnough) return;
-  doubt("normal",
-        "only " + number(100 * best) +
-            " % of the normals face the camera: their axes or their packing are others, or the camera "
-            "is; leave them out (delete \"normal\") or decode them");
+// Named, so that nothing else takes them.
+void Builder::leaveOutNormals() {
+  if (guesses_.count(Role::Normal))
+    result_.found.push_back("normal: " + guesses_.at(Role::Normal).group.name +
+                            " is not needed: surfaces come from front depth");
 }
 
 void Builder::addMaterial() {
@@ -317,7 +282,7 @@ GuessedManifest Builder::build() {
   addDepths();
   addCamera();
   addIrradiance();
-  addNormal();
+  leaveOutNormals();
   addMaterial();
   addBlackness();
   result_.json["lights"] = words_.lights;

@@ -46,7 +46,6 @@ Capture movedCapture(const Capture& capture, int shiftX, int shiftY, int rim) {
   result.backDepth = moved(capture.backDepth, move, capture.clipFromView);
   result.irradiance = moved(capture.irradiance, move, 0);
   result.hiddenIrradiance = moved(capture.hiddenIrradiance, move, 0);
-  result.normal = moved(capture.normal, move, 0);
   result.albedo = moved(capture.albedo, move, 0);
   result.material.assign(capture.material.size(), 0);
   for (int y = rim; y < capture.height - rim; ++y) {

@@ -91,7 +91,6 @@ std::vector<PlannedBinding> plannedBindings() {
                                      {PELLUCID_BINDING_LIGHTS, buffer},
                                      {PELLUCID_BINDING_SHADOWS, buffer},
                                      {PELLUCID_BINDING_MATERIALS, buffer},
-                                     
                                      {PELLUCID_BINDING_MATERIAL, image}};
   for (std::uint32_t i = 0; i < PELLUCID_SHADOW_IMAGE_COUNT; ++i)
     all.push_back({PELLUCID_BINDING_SHADOW_IMAGES + i, image});

@@ -50,7 +50,6 @@ struct RasterOptions {
   bool reversedZ = true;                                        // device depth 1 at the near plane
   bool infiniteFar = false;                                     // perspective cameras only
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_DEVICE;  // DEVICE or VIEW_Z
-  bool normalsInViewSpace = false;
   std::array<double, 2> jitter = {0, 0};  // pixels right and down, -1..1, by which the picture moves
   BackFace backFace = BackFace::Nearest;
   int shadowSize = 1024;  // texels across a shadow map, 0..8192; 0: no shadow maps and no shadows
@@ -63,7 +62,7 @@ struct RasterOptions {
 };
 
 struct RasterResult {
-  // With front depth, back depth unless every pixel is open, irradiance, normal, albedo and material;
+  // With front depth, back depth unless every pixel is open, irradiance, albedo and material;
   // materials and lights as the model's, with the shadow maps of frameLight(). A light that has a radius
   // gets its map, of its center, and brings no irradiance: shadow maps draw no soft shadows.
   Capture capture;

@@ -71,17 +71,6 @@ Capture DrawnFrame::surfaces(const VkRect2D& rect) const {
   capture.albedo = rgb(images_.front.albedoObject().download(rect));
   const Image material = images_.front.material().download(rect);
   capture.material.assign(material.data.begin(), material.data.end());
-  const Image normalPlanar = images_.front.normalPlanar().download(rect);
-  capture.normal = Image(capture.width, capture.height, 3);
-  const glm::dmat3 rotation =
-      options_.normalsInViewSpace ? glm::dmat3(toGlm(capture.viewFromWorld)) : glm::dmat3(1);
-  for (std::size_t i = 0; i < normalPlanar.pixels(); ++i) {
-    const float* n = &normalPlanar.data[4 * i];
-    if (!(n[3] > 0)) continue;
-    const glm::dvec3 normal = rotation * glm::dvec3(n[0], n[1], n[2]);
-    for (int c = 0; c < 3; ++c)
-      capture.normal.data[3 * i + static_cast<std::size_t>(c)] = static_cast<float>(normal[c]);
-  }
   return capture;
 }
 
@@ -252,7 +241,6 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
   outline.metersPerUnit = model_.metersPerUnit;
   outline.clipFromView = projection(camera, options);
   outline.viewFromWorld = camera.viewFromWorld;
-  outline.normalsInViewSpace = options.normalsInViewSpace;
   outline.frontDepth.encoding = outline.backDepth.encoding = options.depthEncoding;
   outline.materials = withBodies(model_.materials, model_.bodies);
   outline.lights = model_.lights;

@@ -61,7 +61,7 @@ double Ambient::chordBeside(const Surface& s) const {
 glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
   if (!capture_.environment && capture_.hiddenIrradiance.empty()) return glm::dvec3(0);
   const PellucidMaterial& m = materials_[material];
-  const glm::dvec3 front = s.normal.value_or(-s.ray);
+  const glm::dvec3 front = surfaces_.facet(s);
   const glm::dmat3 world(surfaces_.worldFromView());
   const auto visible = [&](const glm::dvec3& normal) {
     return capture_.environment ? irradiance(*capture_.environment, world * normal) : glm::dvec3(0);

@@ -188,19 +188,18 @@ std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm
     return std::nullopt;
   const std::optional<Surface> shown = surfaces_.at(x, y);
   if (!shown) return std::nullopt;
-  const std::optional<glm::dvec3> normal = shown->normal ? shown->normal : surfaces_.facet(*shown);
-  if (!normal) return std::nullopt;
+  const glm::dvec3& normal = shown->normal;
   // Limbs, seen at 63 degrees and more, show few of the points where light enters.
-  const double facing = std::abs(glm::dot(*normal, shown->ray));
+  const double facing = std::abs(glm::dot(normal, shown->ray));
   if (!biased && facing * kSteepestSeen <= std::sqrt(1 - std::min(facing * facing, 1.0))) return std::nullopt;
   const double planar = camera.planarDepth(shown->position);
   const auto side = [&](glm::dvec2 step) {
     return glm::distance(camera.position(pixel + 0.5 + step, planar), camera.position(pixel + 0.5, planar));
   };
   const double pixelSide = std::max(side({1, 0}), side({0, 1}));
-  const glm::dvec3 outward = glm::dmat3(surfaces_.worldFromView()) * *normal;
+  const glm::dvec3 outward = glm::dmat3(surfaces_.worldFromView()) * normal;
   if (glm::dot(outward, toLight) <= -kMostTurned) return std::nullopt;
-  if (std::abs(glm::dot(*normal, view - shown->position)) >
+  if (std::abs(glm::dot(normal, view - shown->position)) >
       std::min(tolerance, 0.5 * pixelSide) + offset + uncertain * std::abs(glm::dot(outward, toLight)))
     return std::nullopt;
   return outward;
@@ -305,12 +304,12 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   const Camera& camera = surfaces_.camera();
   const glm::dvec2 pixel = glm::floor(camera.project(surface.position));
   const double planar = camera.planarDepth(surface.position);
-  const glm::dvec3& normal = *surface.normal;
-  // Pixels that `reach` takes on the tangent plane; planes seen edge-on would have no end.
+  const glm::dvec3& normal = surface.normal;
+  // Pixels that `reach` takes on the tangent plane, at least to the next quad; planes seen edge-on would have no end.
   const auto stepsAlong = [&](glm::dvec2 step) {
     glm::dvec3 side = camera.position(pixel + step, planar) - camera.position(pixel, planar);
     side -= surface.ray * (glm::dot(normal, side) / std::min(glm::dot(normal, surface.ray), -0.1));
-    return std::max(1.0, std::floor(reach / (mm_ * glm::length(side)) + 0.5));
+    return std::max(2.0, std::floor(reach / (mm_ * glm::length(side)) + 0.5));
   };
   struct Beside {
     glm::dvec3 apart{0}, turn{0};  // mm; of the normal
@@ -320,10 +319,10 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
     const glm::dvec2 at = pixel + step;
     if (!(at.x >= 0 && at.y >= 0 && at.x < capture_.width && at.y < capture_.height)) return {};
     const std::optional<Surface> other = surfaces_.at(static_cast<int>(at.x), static_cast<int>(at.y));
-    if (!other || !other->normal) return {};
-    const glm::dvec3 apart = mm_ * (other->position - surface.position);
+    if (!other) return {};
+    const glm::dvec3 apart = mm_ * (other->middle - surface.middle);
     const double ratio = glm::dot(apart, apart) / (reach * reach);
-    return {apart, *other->normal - normal, std::clamp((9 - ratio) / 5, 0.0, 1.0)};
+    return {apart, other->normal - normal, std::clamp((9 - ratio) / 5, 0.0, 1.0)};
   };
   const auto across = [&](glm::dvec2 axis) -> Beside {
     const double steps = stepsAlong(axis);
@@ -340,7 +339,7 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
 }
 
 double Gather::thickness(const Surface& surface) const {
-  if (!surface.chord || !surface.normal) return INFINITY;
+  if (!surface.chord) return INFINITY;
   const glm::dvec2 pixel = glm::floor(surfaces_.camera().project(surface.position));
   struct BackFace {
     glm::dvec3 position;
@@ -366,22 +365,22 @@ double Gather::thickness(const Surface& surface) const {
     if (b) return here - b->position;
     return std::nullopt;
   };
-  glm::dvec3 outward = -*surface.normal;
+  glm::dvec3 outward = -surface.normal;
   const auto x = slope({1, 0}), y = slope({0, 1});
   if (x && y) {
     const glm::dvec3 n = glm::cross(*x, *y);
     if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
   }
-  const double opposite = 0.5 - 0.5 * glm::dot(*surface.normal, outward);
+  const double opposite = 0.5 - 0.5 * glm::dot(surface.normal, outward);
   return 0.5 * chord * mm_ *
-         (std::abs(glm::dot(surface.ray, *surface.normal)) + std::abs(glm::dot(surface.ray, outward))) /
+         (std::abs(glm::dot(surface.ray, surface.normal)) + std::abs(glm::dot(surface.ray, outward))) /
          std::max(opposite, 0.01);
 }
 
 BodyFactors Gather::bodyAt(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = *kernels_[material];
   const double reach = kernel.bodyReach();
-  if (!diffused_ || !surface.normal || !(reach > 0)) return {};
+  if (!diffused_ || !(reach > 0)) return {};
   const double h = thickness(surface);
   return kernel.body(h, meanCurvature(surface, std::min(reach, h / 4)));
 }
@@ -397,12 +396,12 @@ struct Gather::Sums {
 Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   const glm::dvec3 world = exit.position / mm_;
   const Arrival arrival = arrivalAt(capture_.lights[light], world);
-  const double cosine = exit.normal ? glm::dot(*exit.normal, arrival.toLight) : 0;
+  const double cosine = glm::dot(exit.normal, arrival.toLight);
   const double slope = std::min(
       std::sqrt(std::max(1 - cosine * cosine, 0.0)) / std::max(std::abs(cosine), 1e-3), kSteepestOwn);
   Place place;
   place.toLight = arrival.toLight;
-  place.axis = glm::normalize(arrival.toLight + std::min(cosine, 0.0) * exit.normal.value_or(glm::dvec3(0)));
+  place.axis = glm::normalize(arrival.toLight + std::min(cosine, 0.0) * exit.normal);
   place.views = &views_[light];
   for (const ShadowView& view : views_[light]) {
     const ShadowView::Lookup found = view.at(world);
@@ -459,7 +458,7 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
     for (const Texel& y : block.texels) {
       if (y.material != 0 && y.material != exit.material + 1) continue;
       const glm::dvec3 to = exit.position - y.position;
-      GatherPath path = gatherPath(to, exit.normal.value_or(-y.normal), y.normal);
+      GatherPath path = gatherPath(to, exit.normal, y.normal);
       const double side = std::sqrt(y.area);
       // Half a texel: nearer than that the sum is no integral.
       const bool own = path.distance < 0.6 * side;
@@ -488,8 +487,8 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
 Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = *kernels_[material];
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
-  Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)), std::nullopt, material};
-  if (surface.normal) exit.normal = glm::dmat3(worldFromView) * *surface.normal;
+  const Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)),
+                  glm::dmat3(worldFromView) * surface.normal, material};
   const BodyFactors body = bodyAt(surface, material);
   const glm::dvec3 rho = kernel.reflectance();
   Gathered result;

@@ -31,8 +31,7 @@ public:
   Gather(const Capture& capture, const SurfaceReader& surfaces,
          const std::vector<PellucidMaterial>& materials, bool diffused = true);
 
-  // `material`: index into the list. Pixels without a normal see every texel as opposite. Safe from several
-  // threads.
+  // `material`: index into the list. Safe from several threads.
   Gathered at(const Surface& surface, std::size_t material) const;
 
 private:
@@ -52,10 +51,10 @@ private:
   };
   using Blocks = std::vector<Block>;
   struct Sums;
-  // A point that leaves light, world. The normal may be missing.
+  // A point that leaves light, world.
   struct Exit {
     glm::dvec3 position;  // mm
-    std::optional<glm::dvec3> normal;
+    glm::dvec3 normal;
     std::size_t material = 0;
   };
   // An exit among a light's rays, as its maps say.
@@ -78,8 +77,8 @@ private:
   // 1 where the straight path from the exit to a texel lies in the body, at that part of the path; 0 where a
   // map's exit lies before, with air or an opaque body behind it. `to`: from the texel to the exit.
   double pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const;
-  // Around a surface with a normal, 1/mm, positive where convex: from what lies `reach` mm to both sides in
-  // the image. 0 where it does not go on.
+  // Around a surface, 1/mm, positive where convex: from the quads that lie `reach` mm to both sides in the
+  // image. 0 where it does not go on.
   double meanCurvature(const Surface& surface, double reach) const;
   // Thickness of the body, mm: a slab's at any angle, a ball's diameter. INFINITY: not known.
   double thickness(const Surface& surface) const;

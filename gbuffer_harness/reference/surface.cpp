@@ -1,5 +1,6 @@
 #include "reference/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,6 +8,9 @@
 
 namespace pellucid::harness::reference {
 namespace {
+
+// Pixels' sides that a pixel of a quad's surface lies behind the nearest one, at most: a surface at 83 degrees.
+constexpr double kReach = 8;
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -24,12 +28,12 @@ void requireImage(const Capture& c, const Image& image, const char* field, int c
 SurfaceReader::SurfaceReader(const Capture& capture)
     : capture_(capture),
       camera_(capture.clipFromView, capture.width, capture.height),
-      viewFromWorld_(toMatrix(capture.viewFromWorld)),
-      worldFromView_(glm::inverse(viewFromWorld_)) {
+      worldFromView_(glm::inverse(toMatrix(capture.viewFromWorld))),
+      quadColumns_((capture.width + 1) / 2),
+      quadRows_((capture.height + 1) / 2) {
   requireImage(capture, capture.frontDepth.image, "frontDepth", 1, false);
   requireImage(capture, capture.backDepth.image, "backDepth", 1, true);
   requireImage(capture, capture.irradiance, "irradiance", 3, false);
-  requireImage(capture, capture.normal, "normal", 3, true);
   requireImage(capture, capture.hiddenIrradiance, "hiddenIrradiance", 3, true);
   requireImage(capture, capture.albedo, "albedo", 3, true);
   const std::size_t pixels =
@@ -37,20 +41,106 @@ SurfaceReader::SurfaceReader(const Capture& capture)
   if (capture.material.size() != pixels)
     throw InputError(capture.name, "material",
                      std::to_string(capture.material.size()) + " pixels; need " + std::to_string(pixels));
+  for (int row = 0; row < quadRows_; ++row)
+    for (int column = 0; column < quadColumns_; ++column) quads_.push_back(makeQuad(column, row));
+}
+
+std::uint8_t SurfaceReader::materialAt(int x, int y) const {
+  return capture_.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
+                           static_cast<std::size_t>(x)];
 }
 
 std::optional<double> SurfaceReader::planarDepth(const DepthImage& depth, int x, int y) const {
   return camera_.planarDepth(*depth.image.at(x, y), depth.encoding);
 }
 
-std::optional<glm::dvec3> SurfaceReader::normalAt(int x, int y) const {
-  if (capture_.normal.empty()) return std::nullopt;
-  const float* stored = capture_.normal.at(x, y);
-  glm::dvec3 n(stored[0], stored[1], stored[2]);
-  if (!capture_.normalsInViewSpace) n = glm::dmat3(viewFromWorld_) * n;
-  const double length = glm::length(n);
-  if (!finite(n) || !(length > 0)) return std::nullopt;
-  return n / length;
+SurfaceReader::Quad SurfaceReader::makeQuad(int column, int row) const {
+  struct Pixel {
+    int x, y;
+    double depth;
+  };
+  std::vector<Pixel> pixels;
+  for (int y = 2 * row; y < std::min(2 * row + 2, capture_.height); ++y)
+    for (int x = 2 * column; x < std::min(2 * column + 2, capture_.width); ++x)
+      if (const auto depth = planarDepth(capture_.frontDepth, x, y); depth && materialAt(x, y) != 0)
+        pixels.push_back({x, y, *depth});
+  if (pixels.empty()) return {};
+  const Pixel nearest = *std::min_element(pixels.begin(), pixels.end(),
+                                          [](const Pixel& a, const Pixel& b) { return a.depth < b.depth; });
+  const glm::dvec3 position = camera_.position({nearest.x + 0.5, nearest.y + 0.5}, nearest.depth);
+  const double side = std::min(glm::length(flatStep(nearest.x, nearest.y, position, {1, 0})),
+                               glm::length(flatStep(nearest.x, nearest.y, position, {0, 1})));
+  Quad quad{materialAt(nearest.x, nearest.y), nearest.depth + kReach * side};
+  double count = 0;
+  for (const Pixel& pixel : pixels) {
+    if (materialAt(pixel.x, pixel.y) != quad.material || pixel.depth > quad.farthest) continue;
+    quad.middle += camera_.position({pixel.x + 0.5, pixel.y + 0.5}, pixel.depth);
+    ++count;
+  }
+  quad.middle /= count;
+  return quad;
+}
+
+SurfaceReader::Quad SurfaceReader::quadAt(glm::ivec2 place) const {
+  if (place.x < 0 || place.y < 0 || place.x >= quadColumns_ || place.y >= quadRows_) return {};
+  return quads_[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(quadColumns_) +
+                static_cast<std::size_t>(place.x)];
+}
+
+glm::dvec3 SurfaceReader::quadSlope(glm::ivec2 place, glm::ivec2 step) const {
+  const Quad own = quadAt(place);
+  const double depth = camera_.planarDepth(own.middle);
+  glm::dvec3 best = flatStep(2 * place.x, 2 * place.y, own.middle, 2 * step);
+  double least = INFINITY;
+  for (const int sign : {1, -1}) {
+    const Quad other = quadAt(place + sign * step);
+    const double difference = std::abs(camera_.planarDepth(other.middle) - depth);
+    if (other.material != own.material || !(difference < least)) continue;
+    least = difference;
+    best = double(sign) * (other.middle - own.middle);
+  }
+  return best;
+}
+
+// The least squares are of offsets along the ray, over the quads of the same material that lie within a quad's side of
+// the tangent plane: quads beyond an edge do not.
+std::optional<glm::dvec3> SurfaceReader::quadNormal(glm::ivec2 place) const {
+  const Quad own = quadAt(place);
+  const glm::dvec3 ray = camera_.rayThrough(own.middle);
+  glm::dvec3 tangent = glm::cross(quadSlope(place, {1, 0}), quadSlope(place, {0, 1}));
+  if (!(glm::length(tangent) > 0) || !finite(tangent)) return std::nullopt;
+  tangent = glm::normalize(glm::dot(tangent, ray) > 0 ? -tangent : tangent);
+  const double side = std::max(glm::length(flatStep(2 * place.x, 2 * place.y, own.middle, {2, 0})),
+                               glm::length(flatStep(2 * place.x, 2 * place.y, own.middle, {0, 2})));
+  std::vector<glm::dvec3> points;
+  glm::dvec3 mean(0);
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      const Quad other = quadAt(place + glm::ivec2(x, y));
+      const glm::dvec3 apart = other.middle - own.middle;
+      if (other.material != own.material || !(std::abs(glm::dot(apart, tangent)) <= side)) continue;
+      points.push_back(apart);
+      mean += apart;
+    }
+  mean /= static_cast<double>(points.size());
+  const glm::dvec3 right =
+      glm::normalize(glm::cross(ray, std::abs(ray.x) < 0.8 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+  const glm::dvec3 down = glm::cross(ray, right);
+  double rr = 0, rd = 0, dd = 0;
+  glm::dvec2 along(0);
+  for (const glm::dvec3& point : points) {
+    const double x = glm::dot(point - mean, right), y = glm::dot(point - mean, down);
+    rr += x * x;
+    rd += x * y;
+    dd += y * y;
+    along += glm::dot(point - mean, ray) * glm::dvec2(x, y);
+  }
+  const double determinant = rr * dd - rd * rd;
+  constexpr double kInLine = 1e-3;  // of quads in one line, which leave the plane's turn about it open
+  if (!(determinant > kInLine * rr * dd)) return tangent;
+  const double x = (dd * along.x - rd * along.y) / determinant, y = (rr * along.y - rd * along.x) / determinant;
+  const glm::dvec3 normal = x * right + y * down - ray;
+  return finite(normal) ? std::optional(glm::normalize(normal)) : std::nullopt;
 }
 
 std::optional<Surface> SurfaceReader::at(int x, int y) const {
@@ -60,8 +150,15 @@ std::optional<Surface> SurfaceReader::at(int x, int y) const {
   Surface s;
   s.position = camera_.position(center, *front);
   s.ray = camera_.rayThrough(s.position);
-  s.normal = normalAt(x, y);
   s.pixel = {x, y};
+  const Quad quad = quadAt({x / 2, y / 2});
+  if (quad.material != 0 && quad.material == materialAt(x, y) && *front <= quad.farthest) {
+    s.normal = quadNormal({x / 2, y / 2}).value_or(-s.ray);
+    s.middle = quad.middle;
+  } else {
+    s.normal = facet(s);
+    s.middle = s.position;
+  }
   if (!capture_.backDepth.image.empty()) {
     const std::optional<double> back = planarDepth(capture_.backDepth, x, y);
     if (back && *back > *front) s.chord = glm::distance(s.position, camera_.position(center, *back));
@@ -81,14 +178,10 @@ glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int 
                                      const glm::dvec3& position) const {
   glm::dvec3 best = flatStep(x, y, position, {stepX, stepY});
   double least = INFINITY;
-  const auto pixel = [&](int px, int py) {
-    return static_cast<std::size_t>(py) * static_cast<std::size_t>(capture_.width) +
-           static_cast<std::size_t>(px);
-  };
   for (const int sign : {1, -1}) {
     const int nx = x + sign * stepX, ny = y + sign * stepY;
     if (nx < 0 || ny < 0 || nx >= capture_.width || ny >= capture_.height) continue;
-    if (capture_.material[pixel(nx, ny)] != capture_.material[pixel(x, y)]) continue;
+    if (materialAt(nx, ny) != materialAt(x, y)) continue;
     const std::optional<double> there = planarDepth(depth, nx, ny);
     if (!there) continue;
     const double difference = std::abs(*there - camera_.planarDepth(position));
@@ -109,8 +202,8 @@ std::optional<glm::dvec3> SurfaceReader::normalFromDepth(const DepthImage& depth
   return glm::dot(n, camera_.rayThrough(position)) > 0 ? -n / length : n / length;
 }
 
-std::optional<glm::dvec3> SurfaceReader::facet(const Surface& s) const {
-  return normalFromDepth(capture_.frontDepth, s.pixel.x, s.pixel.y, s.position);
+glm::dvec3 SurfaceReader::facet(const Surface& s) const {
+  return normalFromDepth(capture_.frontDepth, s.pixel.x, s.pixel.y, s.position).value_or(-s.ray);
 }
 
 std::optional<glm::dvec3> SurfaceReader::backFacet(const Surface& s) const {
@@ -120,8 +213,7 @@ std::optional<glm::dvec3> SurfaceReader::backFacet(const Surface& s) const {
 
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {
   const glm::dvec3 flatX = flatStep(x, y, s.position, {1, 0}), flatY = flatStep(x, y, s.position, {0, 1});
-  glm::dvec3 n = s.normal ? *s.normal : facet(s).value_or(-s.ray);
-  if (glm::dot(n, s.ray) > 0) n = -n;
+  glm::dvec3 n = s.normal;
   const double cosine = -glm::dot(n, s.ray);
   if (cosine < kLeastCosine) {
     const glm::dvec3 sideways = n + cosine * s.ray;

@@ -1,8 +1,10 @@
-// Geometry of a capture, pixel by pixel: what the depths and normals say in double precision.
+// Geometry of a capture, pixel by pixel: what the depths say in double precision.
 #pragma once
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "capture/capture.h"
 #include "reference/camera.h"
@@ -12,12 +14,16 @@ namespace pellucid::harness::reference {
 // View space, scene units.
 struct Surface {
   glm::dvec3 position;
-  glm::dvec3 ray;                    // unit, from the eye to the position
-  std::optional<glm::dvec3> normal;  // unit, outward; absent when the capture's is missing, 0 or not finite
+  glm::dvec3 ray;     // unit, from the eye to the position
+  glm::dvec3 normal;  // unit, towards the eye: of the pixel's quad; against the ray where depths span no plane
+  glm::dvec3 middle;  // of the quad, where its surface has that normal
   glm::ivec2 pixel;
   std::optional<double> chord;  // length of the ray between the front and back surface, > 0
 };
 
+// Quads are squares of 2 x 2 pixels from the image's first pixel on. A quad's surface is its nearest pixel with a
+// material, and the pixels of that material within reach of it. A plane through the middles of the quads around
+// has its normal: normals of single pixels turn from triangle to triangle, and with the rounding of depths.
 class SurfaceReader {
 public:
   // Keeps a reference to the capture. Throws InputError when an image is missing or has the wrong size.
@@ -26,9 +32,9 @@ public:
   // Nothing where the front depth holds nothing. Pixel center of (x, y).
   std::optional<Surface> at(int x, int y) const;
 
-  // Unit normals of the front and back depths at the surface's pixel, view space, towards the eye; nothing
-  // where depths span no plane.
-  std::optional<glm::dvec3> facet(const Surface& surface) const;
+  // Unit normals of the front and back depths of the surface's pixel and the pixels beside, view space, towards
+  // the eye. Where depths span no plane, the front's is against the ray, and the back has none.
+  glm::dvec3 facet(const Surface& surface) const;
   std::optional<glm::dvec3> backFacet(const Surface& surface) const;
 
   // Parallelogram of the surface's tangent plane that the pixel covers: its two half-axes, scene
@@ -46,8 +52,21 @@ public:
   const glm::dmat4& worldFromView() const { return worldFromView_; }
 
 private:
-  std::optional<glm::dvec3> normalAt(int x, int y) const;
+  struct Quad {
+    std::uint8_t material = 0;  // 0: no surface
+    double farthest = 0;        // planar depth of the pixels that count, at most
+    glm::dvec3 middle{0};       // mean of their positions
+  };
+
+  std::uint8_t materialAt(int x, int y) const;
   std::optional<double> planarDepth(const DepthImage& depth, int x, int y) const;
+  Quad makeQuad(int column, int row) const;
+  // One that has no surface beyond the image.
+  Quad quadAt(glm::ivec2 place) const;
+  std::optional<glm::dvec3> quadNormal(glm::ivec2 place) const;
+  // From a quad to whichever of its neighbors along an axis is nearer in depth and of the same material: the other
+  // one may lie across an edge. That of a facing surface where there is none.
+  glm::dvec3 quadSlope(glm::ivec2 place, glm::ivec2 step) const;
   glm::dvec3 slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
                         const glm::dvec3& position) const;
   // Unit, towards the eye; absent where depths span no plane. `position`: of the surface at the pixel.
@@ -58,7 +77,9 @@ private:
 
   const Capture& capture_;
   Camera camera_;
-  glm::dmat4 viewFromWorld_, worldFromView_;
+  glm::dmat4 worldFromView_;
+  int quadColumns_, quadRows_;
+  std::vector<Quad> quads_;
 };
 
 }  // namespace pellucid::harness::reference

@@ -84,15 +84,13 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
                                              int index) const {
   const glm::dmat4& m = surfaces_.worldFromView();
   const glm::dmat3 rotation(m);
-  Receiver r{glm::dvec3(m * glm::dvec4(s.position, 1)),
+  return {glm::dvec3(m * glm::dvec4(s.position, 1)),
              rotation * s.ray,
-             std::nullopt,
+             rotation * surfaces_.facet(s),
              s.chord,
              index,
              &material,
              &s};
-  if (s.normal) r.normal = rotation * *s.normal;
-  return r;
 }
 
 double angleFactor(const TranslucencySettings& settings, double x, double minimumDot) {
@@ -124,8 +122,7 @@ double angleFactor(const TranslucencySettings& settings, double x, double minimu
 }
 
 double Translucency::hiddenCosine(const Receiver& r, std::size_t light, const glm::dvec3& toLight) const {
-  if (settings_.angleModel == PELLUCID_ANGLE_NORMAL && r.normal)
-    return std::max(0.0, -glm::dot(*r.normal, toLight));
+  if (settings_.angleModel == PELLUCID_ANGLE_NORMAL) return std::max(0.0, -glm::dot(r.normal, toLight));
   const glm::dvec3 axis = glm::normalize(glm::dmat3(surfaces_.worldFromView()) * glm::dvec3(0, 0, -1));
   const double x = std::clamp(glm::dot(settings_.constantViewDirection ? axis : r.ray, toLight), -1.0, 1.0);
   return angleFactor(settings_, x, minimumDots_[light]);
@@ -158,19 +155,16 @@ bool Translucency::entersMedium(const ShadowView::Lookup& lookup, const Receiver
 
 bool Translucency::beyondExit(const ShadowView::Lookup& lookup, const Receiver& r,
                               const glm::dvec3& toLight) {
-  const double cosine = r.normal ? glm::dot(*r.normal, toLight) : 0;
-  return lookup.fromExit && *lookup.fromExit > ownTolerance(lookup, cosine) + lookup.exitUncertain;
-}
-
-double Translucency::facing(const std::optional<glm::dvec3>& facet, const glm::dvec3& toLight) const {
-  return facet ? glm::dot(glm::dmat3(surfaces_.worldFromView()) * *facet, toLight) : 0;
+  return lookup.fromExit &&
+         *lookup.fromExit > ownTolerance(lookup, glm::dot(r.normal, toLight)) + lookup.exitUncertain;
 }
 
 // None where the texel stores the receiver itself, which a face that turns away from the light is not, and
 // none through what is opaque.
 double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiver& r,
-                                  const glm::dvec3& toLight, double facing) const {
+                                  const glm::dvec3& toLight) const {
   constexpr double kTurned = 0.5;
+  const double facing = glm::dot(r.normal, toLight);
   if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
   if (isOpaque(*r.medium, std::max(0.0, lookup.distance * surfaces_.millimetersPerUnit()))) return 0;
   const double tolerance =
@@ -197,10 +191,9 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   const std::optional<Taps> taps = texelsAround(light, r.position);
   if (!taps) return path;
-  const double facet = facing(surfaces_.facet(*r.surface), arrival.toLight);
   std::array<double, 4> weights;
   for (std::size_t i = 0; i < taps->size(); ++i) {
-    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, arrival.toLight, facet);
+    weights[i] = (*taps)[i].weight * comesThrough((*taps)[i].found, r, arrival.toLight);
     path.reaches += weights[i];
   }
   if (path.reaches > 0) path.thickness = meanThickness(*taps, weights, r);
@@ -211,8 +204,10 @@ double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dv
   if (shadows_[light].empty()) return 1;
   const std::optional<Taps> taps = texelsAround(light, backPoint);
   if (!taps) return 0;
-  const double cosine =
-      facing(surfaces_.backFacet(*r.surface), arrivalAt(capture_.lights[light], backPoint).toLight);
+  // 0: not known.
+  const std::optional<glm::dvec3> facet = surfaces_.backFacet(*r.surface);
+  const glm::dvec3 toLight = arrivalAt(capture_.lights[light], backPoint).toLight;
+  const double cosine = facet ? glm::dot(glm::dmat3(surfaces_.worldFromView()) * *facet, toLight) : 0;
   double lit = 0;
   for (const auto& [weight, found] : *taps) {
     if (!entersMedium(found, r)) continue;
@@ -231,8 +226,7 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
   path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   path.reaches = litPart(light, r, backPoint);
-  path.thickness =
-      *r.chord * (r.normal && !settings_.chordThickness ? std::abs(glm::dot(*r.normal, r.ray)) : 1);
+  path.thickness = *r.chord * (settings_.chordThickness ? 1 : std::abs(glm::dot(r.normal, r.ray)));
   return path;
 }
 
@@ -257,14 +251,9 @@ double Translucency::unblockedPart(std::size_t light, const Receiver& r, double 
 Translucency::LightPath Translucency::thinWallPath(std::size_t light, const Receiver& r) const {
   constexpr double kTurned = 0.1;
   const Arrival arrival = arrivalAt(capture_.lights[light], r.position);
-  const std::optional<glm::dvec3> facet = surfaces_.facet(*r.surface);
-  const double turn = facet      ? facing(facet, arrival.toLight)
-                      : r.normal ? glm::dot(*r.normal, arrival.toLight)
-                                 : 0;
-  const bool byDepth = settings_.angleModel == PELLUCID_ANGLE_NORMAL && !r.normal && facet;
+  const double turn = glm::dot(r.normal, arrival.toLight);
   LightPath path;
-  path.arriving =
-      arrival.irradiance * (byDepth ? std::max(0.0, -turn) : hiddenCosine(r, light, arrival.toLight));
+  path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
   path.reaches = std::clamp(1 - turn / kTurned, 0.0, 1.0) * unblockedPart(light, r, turn);
   return path;
 }

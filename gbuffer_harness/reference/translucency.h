@@ -27,8 +27,8 @@ struct Transmission {
   glm::dvec3 transmitted{0};              // sum of T(d) times the unoccluded back irradiance
 };
 
-// Value of settings.angleModel for x, the cosine between the view ray and the direction to the light, -1..1;
-// for NORMAL, the value without normals. minimumDot: the light's, of the models that have one.
+// Value of settings.angleModel, any but NORMAL, for x, the cosine between the view ray and the direction to the
+// light, -1..1. minimumDot: the light's, of the models that have one.
 double angleFactor(const TranslucencySettings& settings, double x, double minimumDot);
 
 class Translucency {
@@ -43,7 +43,7 @@ private:
   // A receiver in world space.
   struct Receiver {
     glm::dvec3 position, ray;
-    std::optional<glm::dvec3> normal;
+    glm::dvec3 normal;            // of the front depths at its pixel
     std::optional<double> chord;  // scene units
     int material;
     const PellucidMaterial* medium;
@@ -74,12 +74,8 @@ private:
   static bool beyondExit(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight);
   // Scene units along the light that a point of a stored surface may lie off the depth of its own texel.
   static double ownTolerance(const ShadowView::Lookup& lookup, double cosine);
-  // Part of the light that a texel says comes through to the receiver. `facing`: cosine between the
-  // receiver's depths and the light; 0: not known.
-  double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight,
-                      double facing) const;
-  // Cosine between a direction and the normal of depths, view space; 0: not known.
-  double facing(const std::optional<glm::dvec3>& facet, const glm::dvec3& toLight) const;
+  // Part of the light that a texel says comes through to the receiver.
+  double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
   // Scene units. `weights`: of the taps; not all 0.
   double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
   double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;

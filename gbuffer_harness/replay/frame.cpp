@@ -124,7 +124,6 @@ void fillPlaceholders(const FrameShape& shape, bool hidden, FrameData& data) {
   if (shape.backDepth) f.backDepth = next();
   f.irradiance = next();
   if (hidden) f.hiddenIrradiance = next();
-  if (shape.normal) f.normal = next();
   if (shape.albedo) f.albedo = next();
   f.material = next();
   if (f.options.reuse == PELLUCID_REUSE_ACCUMULATE) f.motion = next();
@@ -177,7 +176,6 @@ FrameShape shapeOf(const Capture& capture) {
   FrameShape shape;
   shape.backDepth = !capture.backDepth.image.empty();
   shape.hiddenIrradiance = !capture.hiddenIrradiance.empty();
-  shape.normal = !capture.normal.empty();
   shape.albedo = !capture.albedo.empty();
   const ShadowImages images = shadowImages(capture.lights);
   shape.shadowImages = images.images.size();
@@ -216,7 +214,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
     f.options.anchor[i] = static_cast<float>(static_cast<double>(settings.anchor[i]) - origin[i]);
   f.options.frontDepthEncoding = capture.frontDepth.encoding;
   f.options.backDepthEncoding = capture.backDepth.encoding;
-  f.options.normalsInViewSpace = capture.normalsInViewSpace;
   f.materialCount = static_cast<uint32_t>(data.materials.size());
   f.materials = data.materials.data();
   data.materialTables.resize(data.materials.size());

@@ -45,7 +45,7 @@ struct FrameShape {
     std::array<int, 2> extent = {0, 0};  // texels, of the map's tile
   };
 
-  bool backDepth = false, hiddenIrradiance = false, normal = false, albedo = false;
+  bool backDepth = false, hiddenIrradiance = false, albedo = false;
   std::vector<Map> maps;  // of all lights, in their order
   std::size_t shadowImages = 0;
 };

@@ -71,7 +71,6 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   Image hidden = capture.hiddenIrradiance;
   scaleColors(hidden, preExposureOf(settings));
   images_.hiddenIrradiance = uploaded(device, hidden, VK_FORMAT_R32G32B32A32_SFLOAT);
-  images_.normal = uploaded(device, capture.normal, settings.normalFormat);
   images_.albedo = uploaded(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
   images_.material = uploadedMaterial(device, capture, settings);
   if (settings.reuse == PELLUCID_REUSE_ACCUMULATE)
@@ -92,7 +91,6 @@ void InputImages::bind(FrameData& data) const {
   f.irradiance = use(images_.irradiance);
   if (f.hiddenIrradiance.view)
     f.hiddenIrradiance = use(images_.hiddenIrradiance);  // of light that is asked for
-  f.normal = use(images_.normal);
   f.albedo = use(images_.albedo);
   f.material = use(images_.material);
   f.motion = use(images_.motion);

@@ -29,8 +29,7 @@ struct ReplaySettings {
   TransmittanceChoice transmittance = TransmittanceChoice::Material;
   PellucidDebugView debugView = PELLUCID_DEBUG_NONE;
   VkFormat outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  VkFormat irradianceFormat = VK_FORMAT_UNDEFINED;        // UNDEFINED: outputFormat
-  VkFormat normalFormat = VK_FORMAT_R32G32B32A32_SFLOAT;  // of the image that normals are uploaded to
+  VkFormat irradianceFormat = VK_FORMAT_UNDEFINED;  // UNDEFINED: outputFormat
   // See PellucidFrame. With a mask, the other bits of the 32 of the uploaded material image hold noise.
   uint32_t materialShift = 0, materialMask = 0;
   // Light from all around comes through thin parts; not given: where the capture has hidden irradiance.

@@ -4,18 +4,6 @@
 
 namespace pellucid::sample {
 
-namespace {
-
-glm::vec3 fromOctahedral(glm::vec2 p) {
-  glm::vec3 n(p, 1 - std::abs(p.x) - std::abs(p.y));
-  const float fold = std::max(-n.z, 0.0f);
-  n.x -= n.x < 0 ? -fold : fold;
-  n.y -= n.y < 0 ? -fold : fold;
-  return glm::normalize(n);
-}
-
-}  // namespace
-
 const GpuImage& Renderer::picture() const {
   check(vkQueueWaitIdle(device_.queue()), "vkQueueWaitIdle");
   return *targets_[kPicture];
@@ -42,12 +30,6 @@ Capture Renderer::capture() {
   c.irradiance = irradiance();
   for (float& value : c.irradiance.data) value /= frame_.preExposure;
   c.albedo = rgb(rectOf(targets_[kAlbedo]->download()));
-  c.normal = rectOf(targets_[kNormal]->download());
-  for (std::size_t i = 0; i < c.normal.pixels(); ++i) {
-    float* n = &c.normal.data[3 * i];
-    const glm::vec3 normal = fromOctahedral({2 * n[0] - 1, 2 * n[1] - 1});
-    for (int k = 0; k < 3; ++k) n[k] = normal[k];
-  }
   for (const float word : rectOf(targets_[kSurface]->download()).data)
     c.material.push_back(static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(word) >> 16));
   for (std::size_t i = 0; i < lit_.size(); ++i) {

@@ -14,7 +14,6 @@ public:
     desc.instance = device.instance(), desc.physicalDevice = device.physicalDevice();
     desc.device = device.handle(), desc.getInstanceProcAddr = vkGetInstanceProcAddr, desc.message = report;
     desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
-    desc.options.normalEncoding = PELLUCID_NORMALS_OCTAHEDRAL_UNORM;
     require(pellucidCreateContext(&desc, &context_));
     size_t i = 0;
     for (PellucidMaterialTables& t : tables_) require(pellucidMakeMaterialTables(&materials_[i++], &t));
@@ -35,7 +34,7 @@ public:
     std::copy_n(&f.lookedAt[0], 4, frame.options.anchor);  // noise stays with the body as it moves on the screen
     frame.metersPerUnit = f.metersPerUnit, frame.preExposure = f.preExposure;
     frame.frontDepth = f.depth, frame.backDepth = f.backDepth;
-    frame.normal = f.normal, frame.albedo = f.albedo, frame.irradiance = f.irradiance;
+    frame.albedo = f.albedo, frame.irradiance = f.irradiance;
     frame.material = f.surface, frame.output = f.color;
     frame.options.materialMask = 0xFF0000, frame.options.materialShift = 16;  // beside roughness
     frame.options.addToOutput = 1;                                            // to specular light

@@ -100,18 +100,13 @@ std::uint8_t Renderer::materialAt(const Cast& cast) {
 void Renderer::writePixel(Capture& capture, int x, int y) const {
   const Cast c = cast(model_.camera, x + 0.5, y + 0.5, capture.width, capture.height);
   if (!c.hit) return;
-  const Object& object = *c.hit->object;
   const glm::dvec3 point = c.ray.at(c.hit->enter);
-  const glm::dvec3 worldNormal = object.solid->normal(point);
-  const glm::dvec3 normal =
-      capture.normalsInViewSpace ? glm::dmat3(toGlm(capture.viewFromWorld)) * worldNormal : worldNormal;
   const glm::dvec3 e = irradiance(c, x, y);
   const glm::dvec3 albedo = model_.albedo ? model_.albedo(point) : glm::dvec3(1);
 
   *capture.frontDepth.image.at(x, y) = encode(model_.camera, capture.frontDepth.encoding, c, c.hit->enter);
   *capture.backDepth.image.at(x, y) = encode(model_.camera, capture.backDepth.encoding, c, c.hit->exit);
   for (int i = 0; i < 3; ++i) {
-    capture.normal.at(x, y)[i] = static_cast<float>(normal[i]);
     capture.irradiance.at(x, y)[i] = static_cast<float>(e[i]);
     if (model_.albedo) capture.albedo.at(x, y)[i] = static_cast<float>(albedo[i]);
   }
@@ -172,8 +167,6 @@ Capture Renderer::render() const {
   capture.frontDepth = {Image(width, height, 1, empty), parameters_.depthEncoding};
   capture.backDepth = capture.frontDepth;
   capture.irradiance = Image(width, height, 3);
-  capture.normal = Image(width, height, 3);
-  capture.normalsInViewSpace = parameters_.normalsInViewSpace;
   if (model_.albedo) capture.albedo = Image(width, height, 3);
   capture.material.resize(capture.irradiance.pixels());
   capture.materials = model_.materials;

@@ -34,7 +34,6 @@ struct SceneParameters {
   bool reversedZ = false;
   bool infiniteFar = false;  // perspective only
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_VIEW_Z;  // DEVICE or VIEW_Z
-  bool normalsInViewSpace = false;
 
   std::optional<PellucidLightType> lightType;  // absent: as the scene prefers; same E at its center
   int shadowSize = 512;                        // texels across a shadow map; 0: no shadow maps

@@ -187,7 +187,7 @@ std::optional<Worst> withUnowned(Subject& s, const Change& change) {
 std::optional<Worst> unownedPixels(Subject& s) {
   Random random = s.random("unowned-pixels");
   return withUnowned(s, [&](Capture& c, std::size_t i) {
-    for (Image* image : {&c.irradiance, &c.normal, &c.albedo})
+    for (Image* image : {&c.irradiance, &c.albedo})
       for (std::size_t k = 0; k < static_cast<std::size_t>(image->channels); ++k)
         image->data[i * static_cast<std::size_t>(image->channels) + k] = badFloat(random);
   });
@@ -425,7 +425,7 @@ std::span<const Check> checks() {
        "frames with dispatches, but for debug views", 0, 0, kBits, &alias},
       {"lists", "groups that go by lists of blocks with material have the bits of all groups",
        "frames with lists, or with lists where they were asked for", 0, 0, kBits, &lists},
-      {"unowned-pixels", "irradiance, normals and albedo of pixels that are not owned change no bit",
+      {"unowned-pixels", "irradiance and albedo of pixels that are not owned change no bit",
        "frames with pixels that are not owned", 0, 0, kBits, &unownedPixels},
       {"unowned-depths", "depths of pixels that are not owned change no bit",
        "frames with pixels that are not owned", 0, 0, kBits, &unownedDepths},

@@ -45,6 +45,25 @@ glm::dvec3 View::point(double x, double y, double p) const {
   return {u * scale, v * scale, sign * p};
 }
 
+glm::dvec3 View::normal(int x, int y) const {
+  const auto planarAt = [&](int column, int row) {
+    return planar[static_cast<std::size_t>(row * width + column)];
+  };
+  const double here = planarAt(x, y);
+  const auto pointAt = [&](int column, int row) {
+    column = std::clamp(column, 0, width - 1);
+    row = std::clamp(row, 0, height - 1);
+    const double p = planarAt(column, row);
+    return point(column, row, p == 0 ? here : p);
+  };
+  const glm::dvec3 axis(0, 0, -sign);
+  const glm::dvec3 cross = glm::cross(pointAt(x + 1, y) - pointAt(x - 1, y), pointAt(x, y + 1) - pointAt(x, y - 1));
+  const double length = glm::length(cross);
+  if (!(length > 0)) return axis;
+  const glm::dvec3 toEye = perspective ? -point(x, y, here) : axis;
+  return cross / length * (glm::dot(cross, toEye) < 0 ? -1.0 : 1.0);
+}
+
 View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& capture) {
   View v{};
   randomSize(random, limits, v.width, v.height);
@@ -245,47 +264,6 @@ void addMaterial(Random& random, bool wild, const View& v, int materials, const 
     }
 }
 
-// From the neighbors' points; faces the eye.
-void addNormals(Random& random, bool wild, const View& v, const std::vector<double>& front, Capture& c) {
-  if (random.chance(0.2)) return;
-  c.normal = Image(v.width, v.height, 3);
-  c.normalsInViewSpace = random.chance(0.3);
-  const auto pointAt = [&](int x, int y, int fallbackX, int fallbackY) {
-    x = std::clamp(x, 0, v.width - 1);
-    y = std::clamp(y, 0, v.height - 1);
-    double p = front[static_cast<std::size_t>(y * v.width + x)];
-    if (p == 0) p = front[static_cast<std::size_t>(fallbackY * v.width + fallbackX)];
-    return v.point(x, y, p);
-  };
-  const glm::dmat3 toWorld(v.worldFromView);
-  const double share = wild && random.chance(0.6) ? random.magnitude(1e-4, 1) : 0;
-  std::size_t i = 0;
-  for (int y = 0; y < v.height; ++y)
-    for (int x = 0; x < v.width; ++x, ++i) {
-      glm::dvec3 n(0, 0, -v.sign);
-      if (front[i] > 0 && v.width > 1 && v.height > 1) {
-        const glm::dvec3 at = v.point(x, y, front[i]);
-        const glm::dvec3 u = pointAt(x + 1, y, x, y) - pointAt(x - 1, y, x, y);
-        const glm::dvec3 w = pointAt(x, y + 1, x, y) - pointAt(x, y - 1, x, y);
-        const glm::dvec3 cross = glm::cross(u, w);
-        const double length = glm::length(cross);
-        const glm::dvec3 toEye = v.perspective ? -at : n;
-        if (length > 0) n = cross / length * (glm::dot(cross, toEye) < 0 ? -1.0 : 1.0);
-      }
-      if (!c.normalsInViewSpace) n = toWorld * n;
-      float* stored = &c.normal.data[3 * i];
-      for (int k = 0; k < 3; ++k) stored[k] = static_cast<float>(n[k]);
-      if (share == 0 || !random.chance(share)) continue;
-      const int kind = random.whole(0, 3);
-      const auto factor = static_cast<float>(random.magnitude(1e-6, 1e6));
-      for (int k = 0; k < 3; ++k)
-        stored[k] = kind == 0   ? 0.0f
-                    : kind == 1 ? badFloat(random)
-                    : kind == 2 ? stored[k] * factor
-                                : -stored[k];
-    }
-}
-
 void addIrradiance(Random& random, bool wild, const View& v, Capture& c) {
   c.irradiance = Image(v.width, v.height, 4);
   const double level = random.magnitude(0.01, 20), contrast = random.chance(0.5) ? 1 : random.real();
@@ -335,7 +313,6 @@ void addRandomImages(Random& random, bool wild, View& view, int materials, Captu
   const std::vector<double>& front = view.planar = randomFront(random, view);
   addDepths(random, wild, view, front, capture);
   addMaterial(random, wild, view, materials, front, capture);
-  addNormals(random, wild, view, front, capture);
   addIrradiance(random, wild, view, capture);
   addAlbedo(random, wild, view, capture);
 }

@@ -222,13 +222,7 @@ void addDirectLight(const Light& light, const View& view, Capture& c) {
         falloff = 1 / square;
         toLight /= std::sqrt(square);
       }
-      double cosine = 1;
-      if (!c.normal.empty()) {
-        const float* stored = c.normal.at(x, y);
-        glm::dvec3 n(stored[0], stored[1], stored[2]);
-        if (c.normalsInViewSpace) n = toWorld * n;
-        cosine = std::clamp(glm::dot(n, toLight), 0.0, 1.0);
-      }
+      const double cosine = std::clamp(glm::dot(toWorld * view.normal(x, y), toLight), 0.0, 1.0);
       for (std::size_t k = 0; k < 3; ++k)
         c.irradiance.data[4 * i + k] +=
             static_cast<float>(light.intensity * falloff * cosine * light.color[k]);

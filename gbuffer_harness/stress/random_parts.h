@@ -23,12 +23,14 @@ struct View {
   std::vector<double> planar;  // of each pixel's surface; 0: nothing there; what depth images hold may differ
 
   glm::dvec3 point(double x, double y, double p) const;  // view space, of the center of pixel x, y
+  // View space, unit, towards the eye: from the points of the pixels beside one that has a surface.
+  glm::dvec3 normal(int x, int y) const;
   double deviceDepth(double p) const { return perspective ? a + b / p : a * p + b; }
 };
 
 View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& capture);
 
-// View::planar, depths, material, normals, irradiance and albedo. `materials`: how many there are.
+// View::planar, depths, material, irradiance and albedo. `materials`: how many there are.
 void addRandomImages(Random& random, bool wild, View& view, int materials, Capture& capture);
 
 void addRandomLights(Random& random, bool wild, const View& view, Capture& capture);

@@ -10,7 +10,7 @@ namespace pellucid::harness {
 
 namespace {
 
-constexpr std::uint32_t kBindings = 7;  // of shaders/display.frag
+constexpr std::uint32_t kBindings = 6;  // of shaders/display.frag
 
 std::vector<VkDescriptorSetLayoutBinding> layoutBindings() {
   std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -88,7 +88,6 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
                                            frame.irradiance,
                                            orWhite(frame.albedo),
                                            frame.material,
-                                           orWhite(frame.normal),
                                            frame.frontDepth,
                                            truth ? truth->use() : white_.use()};
   DescriptorWrites writes;

@@ -19,21 +19,19 @@ namespace pellucid::harness {
 namespace {
 
 // Images that a frame of these settings reads. Nothing goes to the host, but for what is to be stored in
-// ways that no engine's images have here: normals in view space, distances in shadow maps, maps drawn as an
-// engine does or in one image, other formats than floats and halves.
+// ways that no engine's images have here: distances in shadow maps, maps drawn as an engine does or in one
+// image, other formats than floats and halves.
 std::shared_ptr<const InputImages> drawnInputs(const DrawnFrame& drawn, const ReplaySettings& settings) {
   const RasterOptions& options = drawn.options();
   const DrawnFrame::Images& images = drawn.images();
-  if (!areOnDevice(options) || options.normalsInViewSpace || preExposureOf(settings) != 1 ||
-      settings.materialMask != 0 || settings.normalFormat != VK_FORMAT_R32G32B32A32_SFLOAT)
+  if (!areOnDevice(options) || preExposureOf(settings) != 1 || settings.materialMask != 0)
     return std::make_shared<const InputImages>(drawn.device(), drawn.capture(), settings);
   InputImages::Images inputs;
   inputs.shape.backDepth = drawn.hasBackDepth();
-  inputs.shape.normal = inputs.shape.albedo = true;
+  inputs.shape.albedo = true;
   inputs.frontDepth = images.frontDepth;
   if (drawn.hasBackDepth()) inputs.backDepth = images.backDepth;
   const auto& front = images.front.target;
-  inputs.normal = sharedImage(front, FrontTarget::kNormalPlanar);
   inputs.albedo = sharedImage(front, FrontTarget::kAlbedoObject);
   inputs.material = sharedImage(front, FrontTarget::kMaterial);
   inputs.irradiance = drawn.irradianceIn(irradianceFormat(settings));
@@ -276,12 +274,6 @@ Image ViewFrames::pixels(Shown shown, const Capture& surfaces, const VkRect2D& r
       return rgb(run(shown).output(rect));
     case Shown::FrontDepth:
       return surfaces.frontDepth.image;
-    case Shown::Normal: {
-      if (surfaces.normal.empty()) return Image(width, height, 3);
-      Image result = surfaces.normal;
-      for (float& n : result.data) n = 0.5f * n + 0.5f;
-      return result;
-    }
     case Shown::Albedo:
       return surfaces.albedo.empty() ? Image(width, height, 3, 1.0f) : surfaces.albedo;
     case Shown::Material: {

@@ -24,7 +24,6 @@ enum class Shown {
   Truth,       // of a capture that has one
   Debug,       // settings.debugView in false color
   FrontDepth,  // as the capture stores it, in false color
-  Normal,      // -1..1 as 0..1
   Albedo,
   Material,    // index, in false color
 };

@@ -133,7 +133,6 @@ void checkDesc(const PellucidContextDesc& desc, Findings& out) {
     return out.error("options.shadowViewType", "is VkImageViewType ",
                      static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
   const std::tuple<const char*, uint32_t, uint32_t> mosts[] = {
-      {"options.normalEncoding", desc.options.normalEncoding, PELLUCID_NORMALS_OCTAHEDRAL_UNORM},
       {"options.deferPipelines", desc.options.deferPipelines, 1},
       {"options.lightTables", desc.options.lightTables, 1},
       {"options.descriptorPools", desc.options.descriptorPools, 1}};

@@ -64,8 +64,7 @@ ViewBounds::ViewBounds(const Setup& setup) : setup_(setup) {
 // light at a point that cosine is largest where the ray starts.
 bool ViewBounds::angleStops(const PellucidLight& light) const {
   const PellucidThesisOptions& thesis = setup_.thesis;
-  if (thesis.angleModel == PELLUCID_ANGLE_NORMAL)
-    return false;
+  if (thesis.angleModel == PELLUCID_ANGLE_NORMAL) return false;
   const double least = -minimumDotOf(thesis, light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {

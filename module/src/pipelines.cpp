@@ -64,7 +64,7 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
 
-  constexpr size_t kMostConstants = 5;
+  constexpr size_t kMostConstants = 4;
   std::array<PellucidSpecialization, kMostConstants> constants;
   PellucidSpecialization* end = std::copy(pass.constants.begin(), pass.constants.end(), constants.begin());
   *end++ = {PELLUCID_SPECIALIZATION_LIGHT_TABLES, desc.options.lightTables};

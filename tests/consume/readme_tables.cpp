@@ -33,8 +33,6 @@ std::string imagesTable() {
       {PELLUCID_RESOURCE_HIDDEN_IRRADIANCE,
        "irradiance, from light probes, of the hidden face at `backDepth`",
        "`options.ambient` lights the hidden faces, and nothing shadows it"},
-      {PELLUCID_RESOURCE_NORMAL, "outward unit normal, in world or view space",
-       "the view ray stands in for the inward normal; depths give the area of a pixel's surface"},
       {PELLUCID_RESOURCE_ALBEDO, "color that multiplies the light after scattering",
        "the output is not multiplied"},
       {PELLUCID_RESOURCE_MATERIAL, "unsigned integer: 0 for no material, i for `materials[i - 1]`", ""},

@@ -20,7 +20,7 @@ struct GBuffer {
   uint32_t width, height;
   float metersPerUnit;
   float projection[16], view[16];
-  PellucidImage depth, backFaceDepth, irradiance, normal, materialId, scratch[7];
+  PellucidImage depth, backFaceDepth, irradiance, materialId, scratch[7];
   uint32_t lightCount, shadowMapCount;
   const PellucidLight* lights;
   const PellucidShadowMap* shadowMaps;
@@ -51,15 +51,12 @@ std::array<std::array<double, 3>, 2> exitances(uint32_t slices) {
     gpu->upload(content);
     return gpu;
   };
-  Image facing(kSize, kSize, 3);
-  for (size_t i = 2; i < facing.data.size(); i += 3) facing.data[i] = 1;
   const auto depth = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.01f));     // 10 units away
   const auto back = image(VK_FORMAT_R32_SFLOAT, Image(kSize, kSize, 1, 0.1f / 12));  // 2 units behind
   // Of two frames in flight.
   const Image black(kSize, kSize, 3, 0.0f);
   const std::unique_ptr<GpuImage> irradiance[] = {image(VK_FORMAT_R16G16B16A16_SFLOAT, black),
                                                   image(VK_FORMAT_R16G16B16A16_SFLOAT, black)};
-  const auto normal = image(VK_FORMAT_R32G32B32A32_SFLOAT, facing);
   GpuImage material(device, kSize, kSize, VK_FORMAT_R8_UINT);
   material.upload(std::vector<std::uint8_t>(kSize * kSize, 1));
   HostBuffer ring(device, slices * sliceSize,
@@ -79,7 +76,6 @@ std::array<std::array<double, 3>, 2> exitances(uint32_t slices) {
   g.depth = depth->use();
   g.backFaceDepth = back->use();
   g.irradiance = irradiance[0]->use();
-  g.normal = normal->use();
   g.materialId = material.use();
   g.lightCount = 1;
   g.lights = &light;

@@ -81,7 +81,6 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   for (uint32_t i = 0; i < lights; ++i) lights_.push_back(test::Frame::light(i, i < maps ? 1 : 0));
   for (PellucidImage& image : frame.transients)
     if (header[4] & 1) image = test::Frame::view();
-  if (header[4] & 2) frame.normal = test::Frame::view();
   if (header[4] & 4) frame.albedo = test::Frame::view();
   if (header[4] & 64) frame.hiddenIrradiance = test::Frame::view();
   if (header[4] & 8) frame.backDepth = {};
@@ -130,8 +129,8 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   frame = edited;
   bound(frame.options.outputFormat);
   for (PellucidImage* image :
-       {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.hiddenIrradiance, &frame.normal,
-        &frame.albedo, &frame.material, &frame.output, &frame.options.history})
+       {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.hiddenIrradiance, &frame.albedo,
+        &frame.material, &frame.output, &frame.options.history})
     bound(image->layout);
   for (PellucidImage& image : frame.transients) bound(image.layout);
   for (PellucidImage& image : images_) bound(image.layout);

@@ -139,30 +139,25 @@ TEST_F(Diffusion, SubpixelRadiusReturnsTheInput) {
 }
 
 // A kernel that reaches everything averages over the area of the surface, not over pixels: a third, where
-// the dark half is folds of 60 degrees and so twice as large as it looks. With normals and with depths.
+// the dark half is folds of 60 degrees and so twice as large as it looks.
 TEST_F(Diffusion, SurfacesCountByTheirArea) {
-  for (const bool normals : {true, false}) {
-    Capture c = dark(64, 64);
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x) {
-        if (x < 32) {
-          light(c, x, y, 1);
-          continue;
-        }
-        const int fold = x % 16;
-        const double distance = fold < 8 ? fold + 0.5 : 15.5 - fold;
-        c.frontDepth.image.at(x, y)[0] += static_cast<float>(std::sqrt(3) * distance * pixelOf(c));
-        c.normal.at(x, y)[0] = static_cast<float>((fold < 8 ? 1 : -1) * std::sqrt(0.75));
-        c.normal.at(x, y)[2] = 0.5f;
+  Capture c = dark(64, 64);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      if (x < 32) {
+        light(c, x, y, 1);
+        continue;
       }
-    if (!normals) c.normal = {};
-    const Image out = replay(c, gaussians({1e4}, pixelOf(c)), diffusionOnly());
-    double sum = 0;
-    for (int y = 0; y < 64; ++y)
-      for (int x = 0; x < 64; ++x) sum += out.at(x, y)[0] / 4096;
-    // Coarse levels lose some of what is folded, as they go by the tangents of single texels.
-    EXPECT_NEAR(sum, 1.0 / 3, 0.04) << (normals ? "normals" : "depths");
-  }
+      const int fold = x % 16;
+      const double distance = fold < 8 ? fold + 0.5 : 15.5 - fold;
+      c.frontDepth.image.at(x, y)[0] += static_cast<float>(std::sqrt(3) * distance * pixelOf(c));
+    }
+  const Image out = replay(c, gaussians({1e4}, pixelOf(c)), diffusionOnly());
+  double sum = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) sum += out.at(x, y)[0] / 4096;
+  // Coarse levels lose some of what is folded, as they go by the tangents of single texels.
+  EXPECT_NEAR(sum, 1.0 / 3, 0.04);
 }
 
 // Seen edge-on and away from the middle of a wide view, where rounding leaves least of the other side of what
@@ -177,8 +172,6 @@ TEST_F(Diffusion, SteepSurfacesKeepConstants) {
         const double steps = fold < 16 ? fold : 31 - fold;
         c.frontDepth.image.at(x, y)[0] = static_cast<float>(10 + slope * steps * 10 / 0.2 / 32);
         for (int k = 0; k < 3; ++k) c.irradiance.at(x, y)[k] = 0.5f;
-        c.normal.at(x, y)[0] = fold < 16 ? 0.999f : -0.999f;
-        c.normal.at(x, y)[2] = 0.0f;
       }
     for (const double deviation : {3.0, 1e3}) {
       const Image out = replay(c, gaussians({deviation}, 10 / 0.2 / 32), diffusionOnly());
@@ -187,23 +180,6 @@ TEST_F(Diffusion, SteepSurfacesKeepConstants) {
           for (int k = 0; k < 3; ++k)
             ASSERT_NEAR(out.at(x, y)[k], 0.5, 5e-4) << slope << ", " << x << ", " << y;
     }
-  }
-}
-
-// A pixel whose normal is none has the area that the depths say, as all have without an image of normals.
-TEST_F(Diffusion, NormalsThatAreNoneAreLeftOut) {
-  Capture c = dark(48, 48);
-  for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 48; ++x) {
-      c.frontDepth.image.at(x, y)[0] += static_cast<float>(0.002 * ((x - 20) * (x - 20) + 2 * (y - 30) * y));
-      light(c, x, y, static_cast<float>((x / 3 + y / 5) % 2));
-    }
-  c.normal = {};
-  const PellucidMaterial m = gaussians({1, 4}, pixelOf(c));
-  const Image without = replay(c, m, diffusionOnly());
-  for (const float none : {0.0f, std::numeric_limits<float>::quiet_NaN()}) {
-    c.normal = Image(48, 48, 3, none);
-    EXPECT_EQ(replay(c, m, diffusionOnly()).data, without.data) << none;
   }
 }
 

@@ -48,7 +48,6 @@ constexpr Option kOptions[] = {
      }},
     {"pre-exposure", [](ReplaySettings& s, Capture&) { s.preExposure = 0.25f; }},
     {"reuse", [](ReplaySettings& s, Capture&) { s.reuse = PELLUCID_REUSE_ALTERNATE; }},
-    {"no normals", [](ReplaySettings&, Capture& c) { c.normal = {}; }},
     {"no albedo", [](ReplaySettings&, Capture& c) { c.albedo = {}; }},
     {"no back depth", [](ReplaySettings&, Capture& c) { c.backDepth.image = {}; }},
     {"no shadow map", [](ReplaySettings&, Capture& c) { c.lights.at(0).shadowMaps.clear(); }},

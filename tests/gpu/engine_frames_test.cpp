@@ -1,4 +1,4 @@
-// Frames as engines have them: encodings of normals and materials, formats of irradiance, outputs that are
+// Frames as engines have them: encodings of materials, formats of irradiance, outputs that are
 // added to, and pre-exposed irradiance.
 #include <algorithm>
 #include <cmath>
@@ -26,91 +26,6 @@ const Capture& head() {
 }
 
 ReplaySettings wide() { return gathering(8); }
-
-// ---- Normals
-
-// Independent of compute/: Cigolle et al. 2014, listing 1.
-glm::vec2 octahedral(glm::vec3 n) {
-  const glm::vec2 p = glm::vec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  const glm::vec2 signs(p.x >= 0 ? 1 : -1, p.y >= 0 ? 1 : -1);
-  return n.z <= 0 ? (1.0f - glm::abs(glm::vec2(p.y, p.x))) * signs : p;
-}
-
-Capture withNormals(Capture c, PellucidNormalEncoding encoding) {
-  for (size_t i = 0; i < c.normal.pixels(); ++i) {
-    float* stored = c.normal.data.data() + 3 * i;
-    const glm::vec3 n(stored[0], stored[1], stored[2]);
-    if (glm::dot(n, n) == 0) continue;  // nothing there
-    glm::vec3 v = n;
-    if (encoding == PELLUCID_NORMALS_OCTAHEDRAL || encoding == PELLUCID_NORMALS_OCTAHEDRAL_UNORM)
-      v = glm::vec3(octahedral(n), 0);
-    if (encoding == PELLUCID_NORMALS_UNORM || encoding == PELLUCID_NORMALS_OCTAHEDRAL_UNORM)
-      v = 0.5f * v + 0.5f;
-    for (int k = 0; k < 3; ++k) stored[k] = v[k];
-  }
-  return c;
-}
-
-struct Encoded {
-  const char* name;
-  PellucidNormalEncoding encoding;
-  VkFormat format;
-  bool whole;  // with the gather and diffusion, whose pipelines take seconds to make
-  // Relative RMSE of the picture: by how far in radians the encoding's steps turn a normal, and 1/2048 where
-  // the diffusion rounds to halves.
-  double most;
-};
-
-constexpr double kHalf = 1.0 / 2048;
-constexpr Encoded kEncoded[] = {
-    {"octahedral, 16 bits", PELLUCID_NORMALS_OCTAHEDRAL, VK_FORMAT_R16G16_SNORM, true, kHalf + 1.0 / 32767},
-    {"octahedral, 10 bits", PELLUCID_NORMALS_OCTAHEDRAL_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32, false,
-     1.0 / 512},
-    {"0..1, 8 bits", PELLUCID_NORMALS_UNORM, VK_FORMAT_R8G8B8A8_UNORM, false, 1.0 / 128},
-    {"-1..1, 8 bits", PELLUCID_NORMALS_SNORM, VK_FORMAT_R8G8B8A8_SNORM, false, 1.0 / 128}};
-
-Capture inViewSpace(Capture c) {
-  c.normalsInViewSpace = true;
-  for (size_t i = 0; i < c.normal.pixels(); ++i) {
-    float* stored = c.normal.data.data() + 3 * i;
-    const std::array<double, 3> n = {stored[0], stored[1], stored[2]};
-    for (size_t k = 0; k < 3; ++k)
-      stored[k] = static_cast<float>(c.viewFromWorld[k] * n[0] + c.viewFromWorld[4 + k] * n[1] +
-                                     c.viewFromWorld[8 + k] * n[2]);
-  }
-  return c;
-}
-
-TEST_F(EngineFrames, EncodedNormalsGiveThePictureOfPlainOnes) {
-  ReplaySettings chord = wide();
-  chord.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  chord.translucency.gatherSamples = 0;
-  chord.translucency.cameraThickness = 1;
-  const Image whole = replay(head(), wide());
-  const Image through = replay(head(), chord);
-  std::map<PellucidNormalEncoding, std::unique_ptr<Context>> contexts;
-  for (const Encoded& e : kEncoded) {
-    std::unique_ptr<Context>& context = contexts[e.encoding];
-    if (!context)
-      context = std::make_unique<Context>(device(), [&](PellucidContextDesc& desc) {
-        desc.options.uses =
-            e.whole ? PELLUCID_USE_DIFFUSION | PELLUCID_USE_GATHER : PELLUCID_USE_TRANSLUCENCY;
-        desc.options.normalEncoding = e.encoding;
-      });
-    for (const bool view : {false, true}) {
-      const Capture c = view ? inViewSpace(head()) : head();
-      ReplaySettings s = e.whole ? wide() : chord;
-      s.normalFormat = e.format;
-      const FrameRun run(device(), *context, withNormals(c, e.encoding), compileMaterials(c), s);
-      EXPECT_LT(relativeRmse(record(run), e.whole ? whole : through, c.material), e.most)
-          << e.name << (view ? ", view space" : "");
-    }
-  }
-  // The test sees a context that decodes something else.
-  chord.normalFormat = VK_FORMAT_R16G16_SNORM;
-  const Image wrong = replay(withNormals(head(), PELLUCID_NORMALS_OCTAHEDRAL), chord);
-  EXPECT_GT(relativeRmse(wrong, through, head().material), 0.02);
-}
 
 // ---- Materials
 

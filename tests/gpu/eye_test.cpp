@@ -17,7 +17,6 @@ TEST_F(Cli, EvaluateFindsNothingInItsOwnTruth) {
     "camera": {"clipFromView": [0.1, 0, 0, 0, 0, -0.1, 0, 0, 0, 0, -0.001, 0, 0, 0, 0, 1],
                "viewFromWorld": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
     "buffers": {"frontDepth": {"constant": [100], "encoding": "viewZ"}, "material": {"constant": [1]},
-                "normal": {"constant": [0, 0, 1], "space": "world"},
                 "irradiance": {"file": "c.exr", "channels": ["irradiance.R", "irradiance.G", "irradiance.B"]}},
     "lights": [], "materials": [{"preset": "skin1"}]})");
   for (const bool same : {true, false}) {

@@ -108,7 +108,7 @@ TEST_F(Gather, ConstantLightStaysConstant) {
 }
 
 // Without diffusion, light that enters where the camera sees it stays there: nothing comes through. The front recedes by 1.5 mm
-// a mm, and its normals face the camera, so that pixels' planes do not tell which points they show.
+// a mm.
 TEST_F(Gather, SlopesThatTheCameraSeesAreNotHidden) {
   Capture c = flatCapture(48, 48, 20);
   c.lights = {frontLight()};

@@ -121,7 +121,7 @@ inline PellucidMaterial testMaterial() {
 }
 
 // A slab facing an orthographic right-handed camera: front at 10 mm, back `thickness` mm behind it,
-// pixels of 0.25 mm, material 1 and normals towards the camera everywhere, irradiance (1, 0.5, 0.25).
+// pixels of 0.25 mm, material 1 everywhere, irradiance (1, 0.5, 0.25).
 inline Capture flatCapture(int width, int height, double thickness = 1) {
   Capture c;
   c.name = "flat";
@@ -135,12 +135,10 @@ inline Capture flatCapture(int width, int height, double thickness = 1) {
   c.frontDepth.image = Image(width, height, 1, 10);
   c.backDepth.image = Image(width, height, 1, static_cast<float>(10 + thickness));
   c.irradiance = Image(width, height, 3);
-  c.normal = Image(width, height, 3);
   for (size_t i = 0; i < c.irradiance.pixels(); ++i) {
     c.irradiance.data[3 * i] = 1;
     c.irradiance.data[3 * i + 1] = 0.5f;
     c.irradiance.data[3 * i + 2] = 0.25f;
-    c.normal.data[3 * i + 2] = 1;
   }
   c.material.assign(c.irradiance.pixels(), 1);
   c.materials.resize(1);

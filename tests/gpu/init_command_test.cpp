@@ -22,8 +22,7 @@ TEST_F(InitCommand, WritesAManifestThatReplays) {
   ASSERT_EQ(made.code, 0) << made.text;
   for (const char* line :
        {"frontDepth: s.exr front.Z, viewZ", "backDepth: s.exr back.Z, viewZ",
-        "irradiance: s.exr irradiance.R,irradiance.G,irradiance.B",
-        "normal: s.exr normal.X,normal.Y,normal.Z, view space", "the projection is that of --fov",
+        "irradiance: s.exr irradiance.R,irradiance.G,irradiance.B", "the projection is that of --fov",
         "missing most: camera: unknown: where the camera is"})
     EXPECT_NE(made.text.find(line), std::string::npos) << line << "\n" << made.text;
   EXPECT_NE(made.text.find("next: pellucid replay " + manifest), std::string::npos) << made.text;
@@ -36,10 +35,23 @@ TEST_F(InitCommand, WritesAManifestThatReplays) {
   EXPECT_TRUE(json.contains("// camera"));
 }
 
+// Engines' normals follow normal maps, and would turn surfaces away from their depths.
+TEST_F(InitCommand, ABufferOfNormalsChangesNoBit) {
+  ASSERT_EQ(run("init " + path("s.exr") + " --fov 20 --unit mm --light directional:0,0,1:3 -o " + path("c.json")).code, 0);
+  const std::string replay = "replay " + path("c.json") + " --repeat 0 -o " + path("o.exr");
+  expect(0, replay, "wrote");
+  const std::string without = bytes("o.exr");
+  auto json = nlohmann::json::parse(bytes("c.json"));
+  json["buffers"]["normal"] = {{"constant", {0.6, 0, 0.8}}, {"space", "view"}};
+  std::ofstream(path("c.json")) << json.dump();
+  expect(0, replay, "wrote");
+  EXPECT_EQ(bytes("o.exr"), without);
+}
+
 TEST_F(InitCommand, NamesWhatItNeeds) {
   const std::string init = "init " + path("s.exr") + " -o " + path("c.json");
   expect(2, init, "--fov: is needed");
-  expect(2, init + " --fov 20 --normal Nothing", "normal: there is no \"Nothing\"");
+  expect(2, init + " --fov 20 --albedo Nothing", "albedo: there is no \"Nothing\"");
   expect(2, init + " --fov 20 --light sun", "--light: \"sun\" is not directional");
   expect(3, "init " + path("none.exr") + " --fov 20", "none.exr");
   EXPECT_FALSE(std::filesystem::exists(path("c.json")));

@@ -226,7 +226,6 @@ TEST_F(Replay, EveryDepthConventionGivesTheSamePicture) {
       for (float& p : depth->image.data)
         p = static_cast<float>((v.a * v.s * p + v.b) / (v.c * v.s * p + v.d));
     }
-    for (size_t i = 0; i < c.normal.pixels(); ++i) c.normal.data[3 * i + 2] = static_cast<float>(-v.s);
     Light light = backLight();
     light.direction = {0, 0, -v.s};  // towards the eye
     c.lights = {light};

@@ -180,10 +180,8 @@ TEST_F(GpuTest, HeadAgreesWithCycles) {
                               .shadowSize = 2048};
   const RasterResult result = rasterize(device(), model, camera, options);
   const Capture& c = result.capture;
-  // Cycles smoothed the normals anew (0.9 degrees in the median), so light is compared before the cosine.
-  const Light& light = cycles.lights[0];
-  const glm::dmat4 worldFromView = glm::inverse(toGlm(c.viewFromWorld));
   int covered = 0, coverage = 0, front = 0, back = 0, lit = 0, arriving = 0;
+  double ours = 0, theirs = 0;
   for (int y = 0; y < c.height; ++y)
     for (int x = 0; x < c.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y * c.width + x);
@@ -193,19 +191,14 @@ TEST_F(GpuTest, HeadAgreesWithCycles) {
       const double z = *c.frontDepth.image.at(x, y);
       front += std::abs(z - *cycles.frontDepth.image.at(x, y)) > 0.05;
       back += std::abs(*c.backDepth.image.at(x, y) - *cycles.backDepth.image.at(x, y)) > 0.05;
-      const PixelRay ray = rayOf(c, x, y);
-      const glm::dvec3 position =
-          worldFromView * glm::dvec4(ray.direction[0] * z, ray.direction[1] * z, -z, 1);
-      const glm::dvec3 toLight = glm::normalize(toGlm(light.position) - position);
-      const auto cosine = [&](const Capture& capture) {
-        const float* n = capture.normal.at(x, y);
-        return glm::dot(toLight, glm::dvec3(n[0], n[1], n[2]));
-      };
-      const double ours = cosine(c), theirs = cosine(cycles);
-      if (ours < 0.2 || theirs < 0.2) continue;
-      ++lit;
-      arriving += std::abs(*c.irradiance.at(x, y) / ours - *cycles.irradiance.at(x, y) / theirs) > 0.01;
+      const double e = *c.irradiance.at(x, y), of = *cycles.irradiance.at(x, y);
+      ours += e;
+      theirs += of;
+      lit += std::max(e, of) > 0.2;
+      // Cycles smoothed the normals anew, by 0.9 degrees in the median.
+      arriving += std::abs(e - of) > 0.05;
     }
+  std::printf("XX %d %d %g %g\n", lit, arriving, ours, theirs);
   EXPECT_GT(covered, 70000);
   EXPECT_GT(lit, 30000);
   // Pixels where a silhouette or a crease falls on the other side, or, for light, a shadow's edge.

@@ -186,22 +186,6 @@ TEST_F(ThinWall, TheFarWallOfALanternHoldsLightFromOutsideBack) {
   });
 }
 
-// Normal maps bend normals away from a lit face; that does not bring the light to its other side.
-TEST_F(ThinWall, NormalsThatBendDoNotLightALitFace) {
-  Model model = sheet();
-  model.lights = {directional({1, 0, -0.5}, kE)};
-  Capture c = draw(model);
-  for (std::size_t i = 0; i < c.normal.pixels(); ++i) {
-    c.normal.data[3 * i] = 0.9f;
-    c.normal.data[3 * i + 2] = 0.43589f;
-  }
-  expectPixels(c, replay(c, gathering(0)), 1, [&](double x, double y, std::size_t k) {
-    // Beyond the edge there are no depths to take a normal from.
-    const double e = static_cast<double>(c.irradiance.at(32, 32)[k]);
-    return std::max(std::abs(x), std::abs(y)) > 4.5 ? -1 : kReflectance[k] * e;
-  });
-}
-
 // As beside a solid that light does not come through.
 TEST_F(ThinWall, SolidsOfTheFrameDoNotSeeThatSheetsAreThin) {
   Model model = sheet();
@@ -261,7 +245,7 @@ TEST_F(ThinWall, EveryOrderOfDispatchesHasTheSameLight) {
 
 // ---- The reference and path tracing
 
-// Curved sheets, lights of all kinds and encodings, with and without normals and back depths, beside a solid.
+// Curved sheets, lights of all kinds and encodings, with and without back depths, beside a solid.
 TEST_F(ThinWall, AgreesWithTheReference) {
   PellucidMaterial wall = compileMaterial(ThinWallMaterial{{0.4, 0.3, 0.2}, {0.5, 0.6, 0.1}, {}}, "wall");
   struct Row {
@@ -269,14 +253,14 @@ TEST_F(ThinWall, AgreesWithTheReference) {
     PellucidLightType light;
     PellucidDepthEncoding shadow;
     bool source;
-    bool normals, back, maps;
+    bool back, maps;
   };
   for (const Row& row :
-       {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, 0, true, true, true},
-        Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, 0, false, true, true},
-        Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, 1, true, false, true},
-        Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, 1, true, true, true},
-        Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, true, false, false}})
+       {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, 0, true, true},
+        Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, 0, true, true},
+        Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, 1, false, true},
+        Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, 1, true, true},
+        Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, false, false}})
     for (const bool solid : {false, true}) {
       SCOPED_TRACE(testing::Message() << row.scene << " solid " << solid);
       Capture c = makeScene({.name = row.scene,
@@ -285,7 +269,6 @@ TEST_F(ThinWall, AgreesWithTheReference) {
                              .lightType = row.light,
                              .shadowSize = 64,
                              .shadowEncoding = row.shadow});
-      if (!row.normals) c.normal = {};
       if (!row.back) c.backDepth = {};
       if (!row.maps) c.lights[0].shadowMaps.clear();
       std::vector<PellucidMaterial> materials(std::max<std::size_t>(c.materials.size(), 1), wall);

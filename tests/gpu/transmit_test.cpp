@@ -110,7 +110,6 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
         .width = 96,
         .height = 80,
         .reversedZ = reversed,
-        .normalsInViewSpace = reversed,
         .shadowSize = 256,
         .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
     const Difference d = difference(orthographic, options, settings);

@@ -160,7 +160,7 @@ TEST_F(ViewFramesTest, ValuesAreThoseOfTheWholeImages) {
   move();
   const int places[][2] = {{kSize / 2, kSize / 2}, {3, kSize - 5}, {0, 0}, {kSize - 1, kSize - 1}};
   const Shown all[] = {Shown::After, Shown::Before,     Shown::Through, Shown::Difference, Shown::Truth,
-                       Shown::Debug, Shown::FrontDepth, Shown::Normal,  Shown::Albedo,     Shown::Material};
+                       Shown::Debug, Shown::FrontDepth, Shown::Albedo,  Shown::Material};
   std::vector<std::vector<float>> values;
   const std::uint64_t before = device().transfers().downloaded;
   for (const Shown shown : all)

@@ -79,7 +79,7 @@ class RenderDoc(unittest.TestCase):
         self.script.save_textures(rd, controller, {"frontDepth": 5, "irradiance": "ResourceId::6"}, self.folder.name)
         self.assertEqual(saved["frontDepth.exr"][0], "ResourceId::5")
         with self.assertRaisesRegex(ValueError, "(?s)Nothing, Buffer; there are.*5: Z, 4 x 9, D32.*6: E, 16 x 9, D32"):
-            self.script.save_textures(rd, controller, {"normal": "Nothing", "albedo": "Buffer"}, self.folder.name)
+            self.script.save_textures(rd, controller, {"material": "Nothing", "albedo": "Buffer"}, self.folder.name)
 
     # Two draws and a pass after them. The first draw's camera is a struct; the second has a buffer of its own and the
     # newer PipeState.

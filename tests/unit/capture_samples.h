@@ -53,8 +53,6 @@ inline Capture sampleCapture() {
   capture.backDepth = {screen(1, 0.125f), PELLUCID_DEPTH_DEVICE};
   capture.irradiance = screen(3, 0.1f);
   capture.hiddenIrradiance = screen(3, 0.2f);
-  capture.normal = screen(3, -0.7f);
-  capture.normalsInViewSpace = true;
   capture.albedo = screen(3, 0.3f);
   capture.truth = Truth{screen(3, 0.9f), screen(3, 0.01f), 1u << 20, 7, "0123456789abcdef"};
   for (int i = 0; i < kSampleWidth * kSampleHeight; ++i)
@@ -160,7 +158,6 @@ inline nlohmann::json writeSampleFiles(const std::filesystem::path& directory) {
       "frontDepth": {"file": "g.exr", "part": 0, "channel": "Z", "encoding": "viewZ"},
       "backDepth": {"file": "g.exr", "channel": "ZBack", "encoding": "device"},
       "irradiance": {"file": "g.exr", "channels": ["E.R", "E.G", "E.B"]},
-      "normal": {"constant": [0, 0, 1], "space": "view"},
       "albedo": {"constant": [0.62, 0.38, 0.24]},
       "material": {"file": "g.exr", "channel": "id", "map": {"1": 1}}},
     "lights": [{"type": "spot", "position": [0, 0, -9], "direction": [0, 0, 1], "color": [1, 1, 1], "intensity": 3,

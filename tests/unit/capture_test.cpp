@@ -28,15 +28,14 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
 
   EXPECT_EQ(read.name, (directory / "c.exr").string());
   const auto values = [](const Capture& c) {
-    return std::tie(c.width, c.height, c.metersPerUnit, c.clipFromView, c.viewFromWorld, c.normalsInViewSpace,
-                    c.material, c.environment, c.truth->samples, c.truth->seed, c.truth->scene);
+    return std::tie(c.width, c.height, c.metersPerUnit, c.clipFromView, c.viewFromWorld, c.material,
+                    c.environment, c.truth->samples, c.truth->seed, c.truth->scene);
   };
   EXPECT_TRUE(values(read) == values(written));
   EXPECT_TRUE(read.environment);
   expectSame(read.frontDepth, written.frontDepth);
   expectSame(read.backDepth, written.backDepth);
-  for (const auto image :
-       {&Capture::irradiance, &Capture::hiddenIrradiance, &Capture::normal, &Capture::albedo})
+  for (const auto image : {&Capture::irradiance, &Capture::hiddenIrradiance, &Capture::albedo})
     EXPECT_TRUE(sameBits(read.*image, written.*image));
   EXPECT_TRUE(sameBits(read.truth->image, written.truth->image));
   EXPECT_TRUE(sameBits(read.truth->standardError, written.truth->standardError));
@@ -83,14 +82,13 @@ TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
   const TemporaryDirectory directory;
   Capture written = sampleCapture();
   written.backDepth = {};
-  written.hiddenIrradiance = written.normal = written.albedo = {};
+  written.hiddenIrradiance = written.albedo = {};
   written.truth.reset();
   written.lights.clear();
   writeCapture(written, directory / "c.exr");
   const Capture read = readCapture(directory / "c.exr");
   EXPECT_TRUE(read.backDepth.image.empty());
   EXPECT_TRUE(read.hiddenIrradiance.empty());
-  EXPECT_TRUE(read.normal.empty());
   EXPECT_TRUE(read.albedo.empty());
   EXPECT_FALSE(read.truth.has_value());
   EXPECT_TRUE(read.lights.empty());
@@ -133,8 +131,6 @@ TEST_F(Manifests, EveryBufferArrives) {
   expectSame(capture.frontDepth, sample.frontDepth);
   expectSame(capture.backDepth, sample.backDepth);
   EXPECT_TRUE(sameBits(capture.irradiance, sample.irradiance));
-  EXPECT_EQ(capture.normal.at(6, 4)[2], 1.0f);
-  EXPECT_TRUE(capture.normalsInViewSpace);
   EXPECT_EQ(capture.albedo.at(6, 4)[1], 0.38f);
   EXPECT_EQ(capture.material[0], 0);
   EXPECT_EQ(capture.material[1], 1);
@@ -304,16 +300,12 @@ TEST_F(Manifests, OneChannelMayServeTwice) {
   EXPECT_EQ(capture.irradiance.at(3, 2)[2], sample.irradiance.at(3, 2)[2]);
 }
 
-// Programs store E / pi, pre-exposed light, centimeters, and normals as 0 .. 1.
+// Programs store E / pi, pre-exposed light, and centimeters.
 TEST_F(Manifests, StoredValuesMayHaveAScale) {
   const Capture plain = read();
   manifest["buffers"]["frontDepth"]["scale"] = 0.01;
   manifest["buffers"]["irradiance"]["scale"] = 4;
   manifest["buffers"]["albedo"] = {{"constant", {0.25, 0.5, 0.125}}, {"scale", 2}};
-  Image normal(kSampleWidth, kSampleHeight, 3, 0.5f);
-  normal.data[2] = 1;
-  writeExr(directory / "n.exr", normal, {"R", "G", "B"});
-  manifest["buffers"]["normal"] = {{"file", "n.exr"}, {"channels", {"R", "G", "B"}}, {"encoding", "unorm"}};
   const Capture scaled = read();
   for (std::size_t i = 0; i < plain.irradiance.data.size(); ++i)
     EXPECT_EQ(scaled.irradiance.data[i], 4 * plain.irradiance.data[i]);
@@ -325,8 +317,19 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
       EXPECT_EQ(scaled.frontDepth.image.data[i], stored) << "nothing is there";
   }
   EXPECT_EQ(scaled.albedo.data[1], 1);
-  EXPECT_EQ(scaled.normal.data[0], 0);
-  EXPECT_EQ(scaled.normal.data[2], 1);
+}
+
+// Engines have them, and the shared captures, too. Nothing of them is read: not even their file.
+TEST_F(Manifests, NormalsMayBeThere) {
+  for (const json& normal : {json{{"constant", {0, 0, 1}}, {"space", "view"}},
+                             json{{"file", "none.exr"}, {"channels", {"N.X", "N.Y", "N.Z"}}, {"encoding", "unorm"}}}) {
+    manifest["buffers"]["normal"] = normal;
+    EXPECT_TRUE(sameBits(read().irradiance, sample.irradiance));
+    EXPECT_TRUE(readManifest(directory / "m.json").hasNormal);
+  }
+  manifest["buffers"].erase("normal");
+  read();
+  EXPECT_FALSE(readManifest(directory / "m.json").hasNormal);
 }
 
 // Renderers keep light and color apart, or multiplied: what is read is the irradiance, and the whole truth.
@@ -389,7 +392,7 @@ TEST_F(Manifests, AConstantCaptureHasNoSize) {
   for (auto& [name, buffer] : manifest["buffers"].items()) {
     const json encoding = buffer.value("encoding", json());
     buffer = {{"constant",
-               std::vector<double>(name == "normal" || name == "albedo" || name == "irradiance" ? 3 : 1, 1)}};
+               std::vector<double>(name == "albedo" || name == "irradiance" ? 3 : 1, 1)}};
     if (!encoding.is_null()) buffer["encoding"] = encoding;
   }
   manifest.erase("truth");
@@ -429,7 +432,7 @@ constexpr const char* kRequired = R"(
 )";
 
 constexpr const char* kUnknown = R"(
-/exposure /camera/fov /buffers/normal/layer /buffers/material/channels /lights/0/glow
+/exposure /camera/fov /buffers/albedo/layer /buffers/material/channels /lights/0/glow
 /lights/0/shadowMap/bias /lights/0/shadowMap/exit/encoding /lights/0/shadowMap/casterMaterial/scale
 /lights/1/shadowMaps/0/bias /materials/0/name /truth/exposure
 )";
@@ -477,7 +480,6 @@ constexpr const char* kMistakes = R"(
 /buffers/frontDepth/file | "h.exr" | h.exr | no such file
 /buffers/frontDepth/constant | [1] | @buffers.frontDepth.file | constant
 /buffers/albedo/constant | [1] | 3 | 1
-/buffers/normal/space | "tangent" | tangent | world
 /buffers/irradiance/channels | ["E.R"] | 3 | 1
 /buffers/irradiance/channels/1 | "" | empty
 /buffers/material/map | {"1": 2} | buffers.material.map.1 | 2 | 1 materials

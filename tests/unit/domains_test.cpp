@@ -295,7 +295,6 @@ TEST(Domains, LayoutsThatDoNotFitAreNamed) {
       {"backDepth", [](Frame& f) -> PellucidImage& { return f.frame.backDepth; }},
       {"irradiance", [](Frame& f) -> PellucidImage& { return f.frame.irradiance; }},
       {"hiddenIrradiance", [](Frame& f) -> PellucidImage& { return f.frame.hiddenIrradiance; }},
-      {"normal", [](Frame& f) -> PellucidImage& { return f.frame.normal; }},
       {"albedo", [](Frame& f) -> PellucidImage& { return f.frame.albedo; }},
       {"material", [](Frame& f) -> PellucidImage& { return f.frame.material; }},
       {"shadowImages[0]", [](Frame& f) -> PellucidImage& { return f.images[0]; }},
@@ -319,7 +318,7 @@ TEST(Domains, LayoutsThatDoNotFitAreNamed) {
                                   VK_IMAGE_LAYOUT_MAX_ENUM};
   const auto problemsWith = [](const auto& image, VkImageLayout layout) {
     Whole f;
-    f.frame.normal = f.frame.albedo = f.frame.hiddenIrradiance = f.frame.options.history = Frame::view();
+    f.frame.albedo = f.frame.hiddenIrradiance = f.frame.options.history = Frame::view();
     f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
     image(f).layout = layout;
     return f.problems();

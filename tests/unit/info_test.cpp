@@ -63,8 +63,6 @@ TEST_F(InfoCommand, SaysWhatIsThere) {
   EXPECT_EQ(front["pixels"], kSampleWidth * kSampleHeight - 2);  // two hold nothing
   const Image depth = sampleCapture().frontDepth.image;
   EXPECT_EQ(front["range"], json({depth.data[2], depth.data.back()}));  // they grow
-  EXPECT_EQ(capture["buffers"]["normal"]["constant"], json({0.0, 0.0, 1.0}));
-  EXPECT_EQ(capture["buffers"]["normal"]["space"], "view");
   EXPECT_EQ(capture["buffers"]["material"]["pixels"], 15);  // the odd columns
   EXPECT_EQ(capture["buffers"]["truth"]["scale"], 2);
   ASSERT_EQ(capture["lights"].size(), 2u);
@@ -100,30 +98,33 @@ TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
 }
 
 TEST_F(InfoCommand, SaysWhatIsMissing) {
-  for (const char* buffer : {"backDepth", "normal", "albedo"}) manifest["buffers"].erase(buffer);
+  for (const char* buffer : {"backDepth", "albedo"}) manifest["buffers"].erase(buffer);
   manifest.erase("truth");
   manifest["lights"] = json::array();
   const json missing = info()["missing"];
   EXPECT_NE(run().find("missing most: " + missing[0].get<std::string>()), std::string::npos);
-  for (const char* part : {"backDepth", "normal", "albedo", "lights", "truth"})
-    EXPECT_TRUE(has(missing, part)) << part;
+  for (const char* part : {"backDepth", "albedo", "lights", "truth"}) EXPECT_TRUE(has(missing, part)) << part;
+}
+
+TEST_F(InfoCommand, SaysThatNormalsAreNotNeeded) {
+  EXPECT_FALSE(has(info()["warnings"], "normal"));
+  manifest["buffers"]["normal"] = {{"constant", {0, 0, 1}}, {"space", "view"}};
+  EXPECT_TRUE(has(info()["warnings"], "the buffer \"normal\" is not needed"));
 }
 
 TEST_F(InfoCommand, CountsWhatLooksWrong) {
   // Pixel (1, 0) has a material and an infinite front depth.
   json warnings = info()["warnings"];
   EXPECT_TRUE(has(warnings, "1 of 15 material pixels have no front depth")) << warnings;
-  for (const char* good : {"normals", "irradiance", "albedo"}) EXPECT_FALSE(has(warnings, good)) << warnings;
+  for (const char* good : {"irradiance", "albedo"}) EXPECT_FALSE(has(warnings, good)) << warnings;
 
-  manifest["buffers"]["normal"]["constant"] = {0, 0, -2};
   manifest["buffers"]["irradiance"] = {{"constant", {1, -1, 1}}};
   manifest["buffers"]["albedo"]["constant"] = {1, 1, 1.5};
   manifest["buffers"]["backDepth"] = {{"constant", {1}}, {"encoding", "viewZ"}};
   warnings = info()["warnings"];
   // 14 have a front depth.
   for (const char* part :
-       {"15 of 15 normals are not of length 1", "14 of 15 normals point away",
-        "15 of 15 material pixels have an irradiance", "15 of 15 material pixels have an albedo",
+       {"15 of 15 material pixels have an irradiance", "15 of 15 material pixels have an albedo",
         "14 of 15 material pixels have their back depth in front"})
     EXPECT_TRUE(has(warnings, part)) << part << ": " << warnings;
 

@@ -128,7 +128,7 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   const Image product = times(frame_.irradiance, albedo, 1 / kPi);
   std::vector<Channel> channels = {
       {"Z", &frame_.frontDepth.image, 0}, {"back.Z", &frame_.backDepth.image, 0}, {"id", &id, 0}};
-  for (const auto& layer : {triple("direct_diffuse.", "RGB", product), triple("N.", "XYZ", frame_.normal),
+  for (const auto& layer : {triple("direct_diffuse.", "RGB", product), triple("N.", "XYZ", frame_.irradiance),
                             triple("albedo.", "RGB", albedo)})
     channels.insert(channels.end(), layer.begin(), layer.end());
   // OpenEXR: a left-handed camera space, row vectors; the image is 0 .. 1 with y down.
@@ -151,8 +151,10 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
   EXPECT_TRUE(sameBits(capture.backDepth.image, frame_.backDepth.image));
   expectLight(capture.irradiance, frame_.irradiance);
-  EXPECT_TRUE(sameBits(capture.normal, frame_.normal));
-  EXPECT_FALSE(capture.normalsInViewSpace);
+  EXPECT_EQ(std::count(guessed.found.begin(), guessed.found.end(),
+                       "normal: N is not needed: surfaces come from front depth"),
+            1);
+  EXPECT_FALSE(guessed.json["buffers"].contains("normal"));
   EXPECT_EQ(capture.material, frame_.material);
   ASSERT_FALSE(guessed.missing.empty());
   EXPECT_NE(guessed.missing[0].find("lights: without a light"), std::string::npos);
@@ -160,15 +162,13 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   EXPECT_TRUE(guessed.json["buffers"]["irradiance"]["includesAlbedo"]);
 }
 
-// A file for each texture of four channels, a reversed depth buffer, normals as 0 .. 1: what RenderDoc saves.
+// A file for each texture of four channels, a reversed depth buffer: what RenderDoc saves.
 TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   const double nearPlane = 5, aspect = static_cast<double>(frame_.width) / frame_.height;
   const Matrix clip = perspective(fov_ * std::numbers::pi / 180, aspect, {nearPlane, INFINITY, true});
   Image device = frame_.frontDepth.image;
   for (float& depth : device.data)
     depth = depth < kNoDepth ? static_cast<float>(deviceDepth(clip, depth)) : 0;
-  Image normal = frame_.normal;
-  for (std::size_t i = 0; i < normal.data.size(); ++i) normal.data[i] = 0.5f * normal.data[i] + 0.5f;
   const Image id = materialImage(7);
   const auto save = [&](const std::string& name, std::vector<Channel> channels) {
     while (channels.size() < 4) channels.push_back({"", channels[0].image, 0});
@@ -177,7 +177,7 @@ TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
     write(name, channels);
   };
   save("SceneDepthZ.exr", {{"", &device, 0}});
-  save("GBufferA.exr", triple("", "RGB", normal));
+  save("GBufferA.exr", triple("", "RGB", frame_.irradiance));
   save("DiffuseIrradiance.exr", triple("", "RGB", frame_.irradiance));
   save("MaterialID.exr", {{"", &id, 0}});
   const std::vector<std::string> names = {"SceneDepthZ.exr", "GBufferA.exr", "DiffuseIrradiance.exr",
@@ -199,9 +199,6 @@ TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   expectSameView(capture.viewFromWorld, frame_.viewFromWorld, 1e-9);
   for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(capture.clipFromView[i], clip[i], 1e-9) << i;
   EXPECT_EQ(capture.material, frame_.material);
-  EXPECT_FALSE(capture.normalsInViewSpace);
-  for (std::size_t i = 0; i < frame_.material.size(); ++i)
-    EXPECT_NEAR(capture.normal.data[3 * i], frame_.normal.data[3 * i], 1e-6);
   EXPECT_EQ(capture.metersPerUnit, 0.001);
   EXPECT_EQ(guessed.missing.size(), 1u) << guessed.missing[0];
   EXPECT_NE(guessed.missing[0].find("backDepth: without"), std::string::npos);
@@ -215,7 +212,7 @@ TEST_F(Init, BlendersPassesAreKnown) {
                                    {"ViewLayer.IndexMA.X", &id, 0}};
   for (const auto& layer :
        {triple("ViewLayer.DiffDir.", "RGB", frame_.irradiance),
-        triple("ViewLayer.Combined.", "RGB", combined), triple("ViewLayer.Normal.", "XYZ", frame_.normal)})
+        triple("ViewLayer.Combined.", "RGB", combined), triple("ViewLayer.Normal.", "XYZ", frame_.irradiance)})
     channels.insert(channels.end(), layer.begin(), layer.end());
   write("render.exr", channels);
   InitWords words;

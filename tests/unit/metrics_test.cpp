@@ -421,14 +421,13 @@ TEST(Flicker, EvenChangeOfTurnedLightsIsNone) {
 Capture numbered(int width, int height) {
   Capture c = plane(width, height);
   c.backDepth = {Image(width, height, 1), PELLUCID_DEPTH_DEVICE};
-  c.normal = Image(width, height, 3);
   c.albedo = Image(width, height, 3);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float number = static_cast<float>(1 + x + width * y);
       *c.frontDepth.image.at(x, y) = number;
       *c.backDepth.image.at(x, y) = 0.001f * number;
-      for (Image* image : {&c.irradiance, &c.normal, &c.albedo})
+      for (Image* image : {&c.irradiance, &c.albedo})
         for (int k = 0; k < 3; ++k) image->at(x, y)[k] = number + 0.25f * static_cast<float>(k);
       c.material[pixelIndex(c.irradiance, x, y)] = static_cast<std::uint8_t>(number);
     }
@@ -447,7 +446,7 @@ TEST(MovedCapture, ImagesMoveAndTheRimIsEmpty) {
       // The orthographic matrix has device depth 1 far away.
       EXPECT_EQ(*moved.backDepth.image.at(x, y), inside ? *c.backDepth.image.at(fromX, fromY) : 1);
       EXPECT_EQ(moved.material[i], inside ? c.material[pixelIndex(c.irradiance, fromX, fromY)] : 0);
-      for (const auto image : {&Capture::irradiance, &Capture::normal, &Capture::albedo})
+      for (const auto image : {&Capture::irradiance, &Capture::albedo})
         EXPECT_EQ((moved.*image).at(x, y)[2], inside ? (c.*image).at(fromX, fromY)[2] : 0);
     }
   EXPECT_THROW(movedCapture(c, 3, 0, 2), InputError);

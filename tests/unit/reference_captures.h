@@ -39,10 +39,7 @@ inline Capture facingPlane(int width, int height, double pixel) {
   c.clipFromView = orthographic(width, height, pixel);
   c.frontDepth.image = Image(width, height, 1, 100.0f);
   c.irradiance = Image(width, height, 3, 1.0f);
-  c.normal = Image(width, height, 3);
-  for (std::size_t i = 0; i < c.normal.pixels(); ++i) c.normal.data[3 * i + 2] = 1;
-  c.normalsInViewSpace = true;
-  c.material.assign(c.normal.pixels(), 1);
+  c.material.assign(c.irradiance.pixels(), 1);
   return c;
 }
 
@@ -73,8 +70,9 @@ inline double halfPlaneCoverage(glm::dvec2 corner, double pixel, glm::dvec2 dire
 }
 
 // A ball of 8 mm seen along (.4, -.3, -1), by a camera that looks along -z and is sheared, or by one that
-// looks that way. Gets the cosines between the pixels' normals and rays, 0 beside the ball.
-inline Capture obliqueBall(bool sheared, double* cosines) {
+// looks that way. Gets the cosines between the ball's normals and the rays, 0 beside the ball. `light`: irradiance
+// of a point of the ball, mm from its center.
+inline Capture obliqueBall(bool sheared, double* cosines, const std::function<double(const glm::dvec3&)>& light) {
   constexpr int kSide = 80;
   constexpr double kRadius = 8, kPixel = 0.25;
   const glm::dvec3 along(0.4, -0.3, -1), direction = glm::normalize(along);
@@ -94,7 +92,6 @@ inline Capture obliqueBall(bool sheared, double* cosines) {
       c.viewFromWorld[4 * i + 2] = -direction[static_cast<int>(i)];
     }
   }
-  c.normalsInViewSpace = false;
   const glm::dmat4 viewFromWorld = toMatrix(c.viewFromWorld), worldFromView = glm::inverse(viewFromWorld);
   const Camera camera(c.clipFromView, kSide, kSide);
   for (int py = 0; py < kSide; ++py)
@@ -112,11 +109,8 @@ inline Capture obliqueBall(bool sheared, double* cosines) {
       const glm::dvec3 p = origin - (b + std::sqrt(inside)) * direction, n = p / kRadius;
       c.frontDepth.image.data[pixel] = static_cast<float>(-(viewFromWorld * glm::dvec4(p, 1)).z);
       cosines[pixel] = -glm::dot(n, direction);
-      for (int i = 0; i < 3; ++i) {
-        c.normal.data[3 * pixel + static_cast<std::size_t>(i)] = static_cast<float>(n[i]);
-        c.irradiance.data[3 * pixel + static_cast<std::size_t>(i)] =
-            static_cast<float>(1 + 0.9 * std::sin(2 * p.x));
-      }
+      for (std::size_t i = 0; i < 3; ++i)
+        c.irradiance.data[3 * pixel + i] = static_cast<float>(light(p));
     }
   return c;
 }

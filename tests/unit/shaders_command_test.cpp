@@ -262,14 +262,13 @@ TEST(ShadersCommand, PlansBindWhatIsDescribed) {
   // The frame has all of these images, so that none stands in for another.
   static const std::map<std::string, uint32_t> inputs = {{"frontDepthImage", PELLUCID_RESOURCE_FRONT_DEPTH},
                                                          {"backDepthImage", PELLUCID_RESOURCE_BACK_DEPTH},
-                                                         {"normalImage", PELLUCID_RESOURCE_NORMAL},
                                                          {"albedoImage", PELLUCID_RESOURCE_ALBEDO},
                                                          {"materialImage", PELLUCID_RESOURCE_MATERIAL}};
   std::set<uint32_t> seen;
   for (const auto& [lights, samples] : {std::pair(1u, 0u), {1u, 8u}, {2u, 8u}})
     for (const uint32_t indirect : {0u, 1u}) {
       pellucid::test::Frame f(lights);
-      f.frame.normal = f.frame.albedo = f.view();
+      f.frame.albedo = f.view();
       for (PellucidImage& transient : f.frame.transients) transient = f.view();
       f.frame.options.gatherSamples = samples;
       f.frame.options.indirectDispatches = indirect;

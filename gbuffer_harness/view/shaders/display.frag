@@ -5,9 +5,8 @@ layout(set = 0, binding = 0) uniform sampler2D resultImage;
 layout(set = 0, binding = 1) uniform sampler2D irradianceImage;
 layout(set = 0, binding = 2) uniform sampler2D albedoImage;
 layout(set = 0, binding = 3) uniform usampler2D materialImage;
-layout(set = 0, binding = 4) uniform sampler2D normalImage;
-layout(set = 0, binding = 5) uniform sampler2D depthImage;
-layout(set = 0, binding = 6) uniform sampler2D truthImage;
+layout(set = 0, binding = 4) uniform sampler2D depthImage;
+layout(set = 0, binding = 5) uniform sampler2D truthImage;
 
 layout(push_constant) uniform Push {
   vec2 origin;      // of the picture on the screen, pixels
@@ -29,7 +28,7 @@ layout(location = 0) out vec4 color;
 #include "tone_map.glsl"
 
 const int kAfter = 0, kBefore = 1, kThrough = 2, kDifference = 3, kTruth = 4, kDebug = 5, kFrontDepth = 6,
-          kNormal = 7, kAlbedo = 8, kMaterial = 9;
+          kAlbedo = 7, kMaterial = 8;
 
 vec4 fetch(sampler2D image, ivec2 p) { return texelFetch(image, min(p, textureSize(image, 0) - 1), 0); }
 uint materialAt(ivec2 p) { return texelFetch(materialImage, min(p, textureSize(materialImage, 0) - 1), 0).r; }
@@ -45,7 +44,6 @@ vec3 valueAt(ivec2 p) {
     case kTruth: return fetch(truthImage, p).rgb;
     case kDebug: return fetch(resultImage, p).rgb;
     case kFrontDepth: return fetch(depthImage, p).rrr;
-    case kNormal: return 0.5 * fetch(normalImage, p).rgb + 0.5;
     case kAlbedo: return fetch(albedoImage, p).rgb;
     case kMaterial: return vec3(materialAt(p));
     default: return after(p);
@@ -85,10 +83,6 @@ void main() {
   if (push.isFalseColor != 0) {
     float range = push.high - push.low;
     color = vec4(falseColor(range > 0.0 ? (value[push.channel] - push.low) / range : 0.0), 1.0);
-    return;
-  }
-  if (push.shown == kNormal) {
-    color = vec4(value, 1.0);
     return;
   }
   color = vec4(srgb(toneMapped(push.toneMap, value * push.exposure)), 1.0);

@@ -166,7 +166,8 @@ typedef struct PellucidFrame {
    * Take F at normal incidence. */
   float preExposure;
 
-  /* Required; a depth format or one float channel, in options.frontDepthEncoding: the surface that the camera sees. */
+  /* Required; a depth format or one float channel, in options.frontDepthEncoding: the surface that the camera sees. The surface's normal
+   * follows from these depths. Shading normals are no input, because normal maps turn them away from the surface. */
   PellucidImage frontDepth;
   /* Optional; as frontDepth, in options.backDepthEncoding: the nearest back face behind the front depth. Without it no light has the
    * camera-space thickness, and thin parts return as much light as thick parts. */
@@ -177,9 +178,6 @@ typedef struct PellucidFrame {
   PellucidImage hiddenIrradiance;
   /* Required; three float channels: the irradiance E of the visible surface times preExposure, without albedo and specular light. */
   PellucidImage irradiance;
-  /* Optional; outward unit vectors in PellucidContextOptions::normalEncoding. Without it curved surfaces return as much light as
-   * planes. */
-  PellucidImage normal;
   /* Optional; three channels, 0..1: factor of the light after scattering. Without it the factor is 1. */
   PellucidImage albedo;
   /* Required; unsigned integer. 0: no material. i: materials[i - 1]. */

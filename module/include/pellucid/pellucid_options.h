@@ -37,19 +37,6 @@ typedef enum PellucidUse {
 /* Calls job(data, i) for each i below count, on any threads and in any order. Returns after the last job. */
 typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
 
-/* How the normal image holds a vector n. */
-typedef enum PellucidNormalEncoding {
-  /* n in RGB, -1..1, in SNORM and float formats. (0, 0, 0): the pixel has no normal. */
-  PELLUCID_NORMALS_SNORM = 0,
-  /* (n + 1) / 2 in RGB, 0..1. (0, 0, 0): the pixel has no normal. */
-  PELLUCID_NORMALS_UNORM = 1,
-  /* "oct" of Cigolle et al. 2014 in RG, -1..1: x and y of n / (|x| + |y| + |z|). The half z < 0 is folded over the corners. Every pixel
-   * has a normal. */
-  PELLUCID_NORMALS_OCTAHEDRAL = 2,
-  /* OCTAHEDRAL as (oct + 1) / 2 in RG, 0..1. */
-  PELLUCID_NORMALS_OCTAHEDRAL_UNORM = 3
-} PellucidNormalEncoding;
-
 /* Options of a context. */
 typedef struct PellucidContextOptions {
   /* PellucidUse bits; 0 (default): all. */
@@ -57,8 +44,6 @@ typedef struct PellucidContextOptions {
   /* PellucidFrameOptions::outputFormat of all frames: R16G16B16A16_SFLOAT (default) or R32G32B32A32_SFLOAT. UNDEFINED: frames may have any
    * of their formats. The device then needs shaderStorageImageWriteWithoutFormat enabled. */
   VkFormat outputFormat;
-  /* PellucidNormalEncoding of all frames; default SNORM. A library built with PELLUCID_GBUFFER_DECODE has its own decoding instead. */
-  uint32_t normalEncoding;
   /* Type of all views of shadow images: 2D (default) or 2D_ARRAY. A 2D_ARRAY view has all layers and serves the maps of all layers. Each
    * frame then needs a shadow image, even without maps. */
   VkImageViewType shadowViewType;
@@ -160,8 +145,6 @@ typedef struct PellucidFrameOptions {
 
   /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z. */
   uint32_t frontDepthEncoding, backDepthEncoding;
-  /* 1: normals are in view space. 0 (default): world space. */
-  uint32_t normalsInViewSpace;
   /* The material index is (value & materialMask) >> materialShift. Other bits of the value are ignored. Shift: 0..31; default 0. Mask 0
    * (default): all bits. Any other mask must contain the bits of every index. */
   uint32_t materialShift, materialMask;

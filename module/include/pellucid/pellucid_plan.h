@@ -18,16 +18,15 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_FRONT_DEPTH = 0,
   PELLUCID_RESOURCE_BACK_DEPTH = 1,
   PELLUCID_RESOURCE_IRRADIANCE = 2,
-  PELLUCID_RESOURCE_NORMAL = 3,
-  PELLUCID_RESOURCE_ALBEDO = 4,
-  PELLUCID_RESOURCE_MATERIAL = 5,
-  PELLUCID_RESOURCE_OUTPUT = 6,
-  PELLUCID_RESOURCE_CONSTANTS = 7, /* a range of the constants slice */
-  PELLUCID_RESOURCE_TRANSIENT0 = 8,
-  PELLUCID_RESOURCE_HISTORY = 16,
-  PELLUCID_RESOURCE_HIDDEN_IRRADIANCE = 17,
-  PELLUCID_RESOURCE_MOTION = 18,
-  PELLUCID_RESOURCE_SHADOW0 = 19
+  PELLUCID_RESOURCE_ALBEDO = 3,
+  PELLUCID_RESOURCE_MATERIAL = 4,
+  PELLUCID_RESOURCE_OUTPUT = 5,
+  PELLUCID_RESOURCE_CONSTANTS = 6, /* a range of the constants slice */
+  PELLUCID_RESOURCE_TRANSIENT0 = 7,
+  PELLUCID_RESOURCE_HISTORY = 15,
+  PELLUCID_RESOURCE_HIDDEN_IRRADIANCE = 16,
+  PELLUCID_RESOURCE_MOTION = 17,
+  PELLUCID_RESOURCE_SHADOW0 = 18
 } PellucidResource;
 
 /* Limits of plans and dispatches. */
@@ -147,9 +146,9 @@ typedef struct PellucidShader {
   const PellucidSpecialization* constants;
 } PellucidShader;
 
-/* Ids of specialization constants that depend on the context: PellucidContextOptions::normalEncoding, lightTables and uses. `uses` 0
- * becomes all bits. PellucidShader::constants does not contain them. */
-enum { PELLUCID_SPECIALIZATION_NORMALS = 4, PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
+/* Ids of specialization constants that depend on the context: PellucidContextOptions::lightTables and uses. `uses` 0 becomes all bits.
+ * PellucidShader::constants does not contain them. */
+enum { PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
 
 /* Number of pipelines. A pipeline has an index below this number. */
 PELLUCID_API uint32_t pellucidGetPipelineCount(void);
