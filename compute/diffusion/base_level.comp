@@ -13,9 +13,9 @@ const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, a
 
 shared uint cells[2];          // bits of rows 0 to 3 and 4 to 7
 shared uint nearest, farthest; // bits of planar distances, which are above 0
-// Surfaces of the block's quads and of those around it, as keepSurface has them.
+// Surfaces of the block's quads and of those around it, as keepSurface has them. Before, colors[].x has the materials of a quad's pixels.
 shared float depths[kRow * kRow];
-shared uint surfaces[kRow * kRow];
+shared uvec2 colors[kRow * kRow];
 
 // The invocation's i-th quad of the block, so that neighbors do neighbors.
 ivec2 quadInBlock(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i % kQuads, i / kQuads); }
@@ -73,11 +73,12 @@ QuadSurface surfaceOf(float depth[4], uint materials) {
 
 const uint kEnds = 0x1000u;
 
-// depths[]: the depth. surfaces[]: material; from bit 8 on, pixels; kEnds.
-void keepSurface(ivec2 quad, QuadSurface s) {
+// depths[]: the depth. colors[]: mean color of the pixels; in the upper half of y the material, from bit 8 on the pixels, and kEnds.
+void keepSurface(ivec2 quad, QuadSurface s, vec3 color) {
   depths[placeOf(quad)] = s.depth;
-  surfaces[placeOf(quad)] = s.material | s.pixels << 8 | (s.ends ? kEnds : 0u);
+  colors[placeOf(quad)] = packHalves(roundToHalf(color), s.material | s.pixels << 8 | (s.ends ? kEnds : 0u));
 }
+uint surfaceAt(int place) { return colors[place].y >> 16; }
 uint materialOf(uint surface) { return surface & 255u; }
 uint pixelsOf(uint surface) { return surface >> 8 & kAllPixels; }
 
@@ -95,7 +96,7 @@ float nearerStep(int place, int stride, uint material, float own, float center) 
   float best = 0.0, least = 3.0e38;
   [[unroll]] for (int side = -1; side <= 1; side += 2) {
     int at = place + side * stride;
-    uint bits = surfaces[at];
+    uint bits = surfaceAt(at);
     vec2 other = centerOf(pixelsOf(bits));
     float change = (depths[at] - own) / (float(side) + (stride == 1 ? other.x : other.y) - center);
     if (!(depths[at] > 0.0) || materialOf(bits) != material || abs(change) >= least) continue;
@@ -111,45 +112,44 @@ const float kLimb = 1.41421356;
 
 // kLimb where the surface ends in the quad or in the direction in which its depth grows, and what lies there is not nearer.
 float limbOf(int place, int stride, float own, float perTexel, float reach) {
-  bool ends = (surfaces[place] & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
+  bool ends = (surfaceAt(place) & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
   return ends ? kLimb : 1.0;
 }
 
-// The texel of a quad with a surface. `color`: mean of its pixels.
-uvec4 texelOf(ivec2 first, ivec2 quad, vec3 color) {
+// The texel of a quad with a surface.
+uvec4 texelOf(ivec2 first, ivec2 quad) {
   int place = placeOf(quad);
   float own = depths[place];
-  uint material = materialOf(surfaces[place]), pixels = pixelsOf(surfaces[place]);
+  uint material = materialOf(surfaceAt(place)), pixels = pixelsOf(surfaceAt(place));
   vec2 center = centerOf(pixels), size = texelSize(own, 1u), ray = facingRayAt(pixelOf(1u, first + quad));
   vec2 perTexel = vec2(nearerStep(place, 1, material, own, center.x), nearerStep(place, kRow, material, own, center.y));
   vec2 perSize = 1.0 / max(size, vec2(1.0e-30));
   // A surface is another where it is a texel's side off along the ray.
   float perSquare = inverseSpread(perTexel * perSize, ray, size) * (1.0 + dot(ray, ray));
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
-  [[unroll]] for (int y = -1; y <= 1; ++y)
-    [[unroll]] for (int x = -1; x <= 1; ++x) {
-      if (x == 0 && y == 0) continue;
-      int at = place + y * kRow + x;
-      uint bits = surfaces[at];
-      vec2 step = vec2(x, y) + centerOf(pixelsOf(bits)) - center;
-      float off = depths[at] - own - dot(perTexel, step);
-      float w = depths[at] > 0.0 && materialOf(bits) == material ? max(1.0 - off * off * perSquare, 0.0) : 0.0;
-      tilt += w * off * step;
-      spread += w * step * step;
-    }
+  // Not unrolled, here and below: small frames wait for code.
+  [[dont_unroll]] for (int i = 0; i < 9; ++i) { // the quad itself adds nothing
+    ivec2 away = ivec2(i % 3, i / 3) - 1;
+    int at = place + away.y * kRow + away.x;
+    uint bits = surfaceAt(at);
+    vec2 step = vec2(away) + centerOf(pixelsOf(bits)) - center;
+    float off = depths[at] - own - dot(perTexel, step);
+    float w = depths[at] > 0.0 && materialOf(bits) == material ? max(1.0 - off * off * perSquare, 0.0) : 0.0;
+    tilt += w * off * step;
+    spread += w * step * step;
+  }
   perTexel += tilt / max(spread, vec2(1.0e-3));
   float reach = 2.0 * kSteepest * min(size.x, size.y);
   vec2 limb = vec2(limbOf(place, 1, own, perTexel.x, reach), limbOf(place, kRow, own, perTexel.y, reach));
   vec2 slope = limb * perTexel * perSize;
   float area = areaOf(1u, first + quad, limb * slope) * 0.25 * float(bitCount(pixels));
-  return packTexel(Texel(color, area, material, own, slope), pixels == kAllPixels ? kPlane : 0u);
+  return packTexel(Texel(unpackHalves(colors[place]), area, material, own, slope), pixels == kAllPixels ? kPlane : 0u);
 }
 
 // ---- Pixels
 
-// Loads a quad of the block, keeps its surface and, where its cell has material, copies its pixels and returns the mean color of
-// the surface.
-vec3 readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
+// Loads a quad of the block, keeps its surface and, where its cell has material, copies its pixels.
+void readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
   float depth[4];
   vec4 source[4];
   // All loads come before the first use, so that their latencies overlap.
@@ -159,8 +159,6 @@ vec3 readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
     source[i] = holdsMaterial ? texelFetch(sourceImage, at, 0) : vec4(0.0);
   }
   QuadSurface s = surfaceOf(depth, materials);
-  keepSurface(quad, s);
-  if (materials == 0u) return vec3(0.0);
   float least = kNoDepth, most = 0.0;
   vec3 sum = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -172,12 +170,11 @@ vec3 readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
     least = min(least, depth[i]);
     most = max(most, depth[i]);
   }
+  keepSurface(quad, s, sum / float(max(bitCount(s.pixels), 1)));
   // Read first: most invocations have nothing to add. An old value costs an atomic more and changes nothing.
-  if (most > 0.0) {
-    if (floatBitsToUint(least) < nearest) atomicMin(nearest, floatBitsToUint(least));
-    if (floatBitsToUint(most) > farthest) atomicMax(farthest, floatBitsToUint(most));
-  }
-  return sum / float(max(bitCount(s.pixels), 1));
+  if (!(most > 0.0)) return;
+  if (floatBitsToUint(least) < nearest) atomicMin(nearest, floatBitsToUint(least));
+  if (floatBitsToUint(most) > farthest) atomicMax(farthest, floatBitsToUint(most));
 }
 
 // Loads the surface of a quad around the block.
@@ -189,8 +186,10 @@ void readAround(ivec2 first, ivec2 quad, ivec4 rect) {
     depth[i] = frontDistance(within);
     materials |= (at == within ? materialAt(within) : 0u) << 8 * i;
   }
-  keepSurface(quad, surfaceOf(depth, materials));
+  keepSurface(quad, surfaceOf(depth, materials), vec3(0.0));
 }
+
+bool cellHolds(ivec2 cell) { return (cells[cell.y >> 2] & cellBit(cell)) != 0u; }
 
 void main() {
   uint block = gl_WorkGroupID.x;
@@ -198,43 +197,40 @@ void main() {
   ivec2 first = firstPixel(block) / 2; // quad
   // The rect in pixels of the image takes 8 registers less than pixels of the lattice for each load.
   ivec4 rect = ivec4(inImage(ivec2(frame.rect.xy)), inImage(ivec2(frame.rect.zw)));
-  uint materials[kQuads * kQuads];
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    materials[i] = 0u;
-    [[unroll]] for (int k = 0; k < 4; ++k) {
-      ivec2 at = inImage(2 * first) + 2 * quadInBlock(i) + ivec2(k & 1, k >> 1);
-      materials[i] |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
-    }
-  }
   if (invocation < 2) cells[invocation] = 0u;
   if (invocation == 0) {
     nearest = floatBitsToUint(kNoDepth);
     farthest = 0u;
   }
   barrier();
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    ivec2 cell = cellOfQuad(quadInBlock(i));
-    if (materials[i] != 0u && (cells[cell.y >> 2] & cellBit(cell)) == 0u) atomicOr(cells[cell.y >> 2], cellBit(cell));
+  [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    ivec2 quad = quadInBlock(i), cell = cellOfQuad(quad);
+    uint materials = 0u;
+    [[unroll]] for (int k = 0; k < 4; ++k) {
+      ivec2 at = inImage(2 * first) + 2 * quad + ivec2(k & 1, k >> 1);
+      materials |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
+    }
+    colors[placeOf(quad)].x = materials;
+    if (materials != 0u && !cellHolds(cell)) atomicOr(cells[cell.y >> 2], cellBit(cell));
   }
   barrier();
   bool some = (cells[0] | cells[1]) != 0u;
   // Early, so that the pixels' loads hide the latency.
   if (goesByLists() && invocation < 9) countBlock(block, invocation, uvec2(cells[0], cells[1]));
-  vec3 colors[kQuads * kQuads];
   if (some) {
-    [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-      ivec2 quad = quadInBlock(i), cell = cellOfQuad(quad);
-      colors[i] = readQuad(first, quad, materials[i], (cells[cell.y >> 2] & cellBit(cell)) != 0u);
-    }
     if (invocation < kAround) readAround(first, quadAround(invocation), rect);
+    [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+      ivec2 quad = quadInBlock(i);
+      readQuad(first, quad, colors[placeOf(quad)].x, cellHolds(cellOfQuad(quad)));
+    }
   }
   barrier();
   if (some) {
-    [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-      ivec2 quad = quadInBlock(i), cell = cellOfQuad(quad);
-      if ((cells[cell.y >> 2] & cellBit(cell)) == 0u || !contains(levelRect(1u), first + quad)) continue;
-      uint bits = surfaces[placeOf(quad)];
-      writeLevel(1u, first + quad, pixelsOf(bits) != 0u ? texelOf(first, quad, colors[i]) : uvec4(0u, bits << 24, 0u, 0u));
+    [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+      ivec2 quad = quadInBlock(i);
+      if (!cellHolds(cellOfQuad(quad)) || !contains(levelRect(1u), first + quad)) continue;
+      uint bits = surfaceAt(placeOf(quad));
+      writeLevel(1u, first + quad, pixelsOf(bits) != 0u ? texelOf(first, quad) : uvec4(0u, materialOf(bits) << 24, 0u, 0u));
     }
   }
   if (invocation < 2) writeWord(blockWord(block, kCellWord + uint(invocation)), cells[invocation]);

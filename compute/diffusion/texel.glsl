@@ -140,7 +140,7 @@ vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
   ivec2 toward = 2 * (pixel & 1) - 1;
   vec3 sum = vec3(0.0);
   float total = 0.0;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 quad = (pixel >> 1) + toward * ivec2(i & 1, i >> 1);
     // The pixel's own quad has been written, as the pixel has a material.
     Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenTexel(1u, quad, false));
