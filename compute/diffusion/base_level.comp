@@ -234,8 +234,6 @@ void main() {
     }
   }
   if (invocation < 2) writeWord(blockWord(block, kCellWord + uint(invocation)), cells[invocation]);
-  if (invocation == 2) writeWord(blockWord(block, kNearestWord), nearest);
-  if (invocation == 3) writeWord(blockWord(block, kFarthestWord), farthest);
   if (!goesByLists()) return;
   if (block == 0u && invocation < PELLUCID_LISTS) lists.commands[invocation].ran.x = 0u;
   if (farthest == 0u) return;

@@ -11,9 +11,9 @@
 layout(set = 0, binding = PELLUCID_BINDING_BLOCKS, r32ui) uniform uimage2D blocksImage;
 
 const int kBlockShift = 6, kCellShift = 3; // of PELLUCID_BLOCK and PELLUCID_CELL
-// Words of a block: two with a bit for each cell of 8 x 8 pixels, rows 0 to 3 and 4 to 7; the bits of the nearest and of the
-// farthest planar distance of its surfaces; 1 if the block or one beside it has material.
-const uint kCellWord = 0u, kNearestWord = 2u, kFarthestWord = 3u, kNearWord = 4u;
+// Words of a block: two with a bit for each cell of 8 x 8 pixels, rows 0 to 3 and 4 to 7; 1 if the block or one beside it has
+// material.
+const uint kCellWord = 0u, kNearWord = 2u;
 
 ivec2 wordPlace(uint word) {
   return ivec2(word & ((1u << PELLUCID_BLOCK_WORDS_SHIFT) - 1u), word >> PELLUCID_BLOCK_WORDS_SHIFT);

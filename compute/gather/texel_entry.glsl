@@ -224,22 +224,18 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0;
   // An offset along normals is undone by its mean, which is off by as much where the light grazes.
   float offset = abs(map.offsets.z);
-  Shown shown = shownAt(y.position);
-  bool isShown = liesOn(shown, toLight, tolerance, uncertain, offset, biased);
-  if (map.offsets.y != 0.0 && !isShown && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+  Shown shown;
+  bool isShown = false;
+  MapPoint tried = y;
+  [[dont_unroll]] for (int i = 0; !isShown && i <= kMostAgain; ++i) {
+    Shown next = shownAt(tried.position);
+    isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
+    if (i == 0 || isShown) shown = next;
+    if (isShown) y = tried;
     // The slope of what the camera shows undoes the bias again, until that leads to a point of what the camera shows there.
-    Shown next = shown;
-    for (int i = 0; i < kMostAgain && !isShown && next.front > 0.0; ++i) {
-      float bias = map.offsets.x + map.offsets.y * slopeOnPlane(map, y.position, next.normal);
-      MapPoint again = pointOf(map, texel, asDrawn - bias);
-      if (!(abs(again.depth) < kNoDepth)) break;
-      next = shownAt(again.position);
-      isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
-      if (isShown) {
-        y = again;
-        shown = next;
-      }
-    }
+    if (map.offsets.y == 0.0 || map.meta.y != PELLUCID_SHADER_DEPTH_DEVICE || !(next.front > 0.0)) break;
+    tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, next.normal));
+    if (!(abs(tried.depth) < kNoDepth)) break;
   }
   if (isShown) normal = shown.normal;
 

@@ -238,7 +238,7 @@ struct KernelConstants {
 #define PELLUCID_LIST_COARSE 5u     // levels 4 to 7: all groups, if there is material
 #define PELLUCID_LIST_ENTRIES 6u    // groups of entry points within reach of what blocks show
 #define PELLUCID_LISTS 7
-#define PELLUCID_BLOCK_WORDS 5    // see compute/frame/blocks.glsl
+#define PELLUCID_BLOCK_WORDS 3    // see compute/frame/blocks.glsl
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
 
