@@ -265,8 +265,7 @@ struct BlockLists {
 // coarse levels: columns of groups, coarsest level
 // upsample: coarsest level
 // diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
-// entry points: unused, columns and, from bit 16 on, rows of entry points
-// probes: pixels a side of a cell, lights, columns and rows of entry points and, in bit 31, 1 to add to what is there, samples
+// probes: pixels a side of a cell, lights, 1 to add to what is there, samples
 // filter probes: pixels a side of a cell
 struct PassConstants {
   uvec4 value;

@@ -213,13 +213,11 @@ constexpr Pass kEntryPointsPass{
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
-// Columns and, from bit 16 on, rows of a group's entry points.
-uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
 void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel)).push(1, entriesOf(group));
+  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel));
   if (p.facts.stages.lists)
     step.groups(columns * rows * group.shadowCount).list(PELLUCID_LIST_ENTRIES);
   else
@@ -254,7 +252,7 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
       .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
       .push(0, p.facts.gatherSpacing)
       .push(1, group.gathered)
-      .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
+      .push(2, adds)
       .push(3, p.facts.gatherSamples);
 }
 
