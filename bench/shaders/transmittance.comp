@@ -52,8 +52,7 @@ void main() {
 #ifndef THICKNESS
     through = through > 0.0 ? chord(through - front, ray) : -1.0;
 #endif
-    Surface s = makeSurface(ray, front, through, facetAt(pixel, material, false));
-    s.material = material;
+    Surface s = surfaceOf(pixel, ray, front, through, material);
     for (uint i = 0u; i < pass.value.x; ++i)
       sum += exitanceOf(lightTransmission(lights[i], s, pixel), material - 1u);
     sum *= materials[material - 1u].inverseReflectance.rgb;

@@ -1,152 +1,242 @@
-// Makes level 1 of the pyramid from the pixels, a block of 64 x 64 a group, and finds which cells of the block hold material and
-// how far away their surfaces are. It copies the pixels where the plan asks for it.
+// Makes level 1 of the pyramid from the pixels, a block of 64 x 64 a group: color, depth, slope and area of the surface of each quad
+// of 2 x 2 pixels. Every pass takes surfaces from these texels. The pass lists where later ones have work: it finds which cells of the
+// block hold material and how far away their surfaces are. It copies the pixels where the plan asks for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
+#include "diffusion/list_blocks.glsl"
 #include "diffusion/texel.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
-  BlockLists lists;
-  uint entryGroups[];
-};
-
 const int kQuads = PELLUCID_BLOCK / 2 / GROUP_SIDE; // a side, of an invocation
+const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, and with those around it
 
 shared uint cells[2];          // bits of rows 0 to 3 and 4 to 7
 shared uint nearest, farthest; // bits of planar distances, which are above 0
+// Surfaces of the block's quads and of those around it, as keepSurface has them. Before, colors[].x has the materials of a quad's pixels.
+shared float depths[kRow * kRow];
+shared uvec2 colors[kRow * kRow];
 
 // The invocation's i-th quad of the block, so that neighbors do neighbors.
 ivec2 quadInBlock(int i) { return ivec2(gl_LocalInvocationID.xy) + GROUP_SIDE * ivec2(i % kQuads, i / kQuads); }
 ivec2 cellOfQuad(ivec2 quad) { return quad >> (kCellShift - 1); }
+int placeOf(ivec2 quad) { return (quad.y + 1) * kRow + quad.x + 1; }
 
-// ---- A texel from its quad: four pixels, rows first, packed by packHalves(color, material); depth <= 0: none
-
-// Projected-area weight of a quad that is one surface, as its depths say.
-float areaOfQuad(ivec2 quad, float depth[4]) {
-  vec2 rise = 0.5 * vec2(depth[1] - depth[0] + depth[3] - depth[2], depth[2] - depth[0] + depth[3] - depth[1]);
-  return areaOf(1u, quad, rise * inversesqrt(max(squaredPixelSize(frame.camera, depth[0]), vec2(1.0e-30))));
+// The i-th quad around the block: the rows above and below, then the columns between them.
+ivec2 quadAround(int i) {
+  if (i < 2 * kRow) return ivec2(i % kRow - 1, i < kRow ? -1 : kSide);
+  i -= 2 * kRow;
+  return ivec2(i < kSide ? -1 : kSide, i % kSide);
 }
+const int kAround = 4 * kSide + 4;
 
-// True where the four pixels are one surface.
-bool isWholeQuad(uvec2 packed[4], float depth[4]) {
-  uint first = packed[0].y, different = (first ^ packed[1].y) | (first ^ packed[2].y) | (first ^ packed[3].y);
-  float nearest = min(min(depth[0], depth[1]), min(depth[2], depth[3]));
-  float farthest = max(max(depth[0], depth[1]), max(depth[2], depth[3]));
-  bool one = nearest > 0.0 && first >> 16 != 0u && different >> 16 == 0u;
-  vec2 sides = squaredPixelSize(frame.camera, nearest);
-  float span = farthest - nearest;
-  return one && span * span < 64.0 * min(sides.x, sides.y);
-}
+// ---- The surface of a quad: the nearest of its pixels with material, and those of its material that a step of kSteepest reaches
 
-uvec4 wholeQuadTexel(uvec2 packed[4], float depth[4], float area) {
-  vec3 color = unpackHalves(packed[0]) + unpackHalves(packed[1]) + unpackHalves(packed[2]) + unpackHalves(packed[3]);
-  float sum = depth[0] + depth[1] + depth[2] + depth[3];
-  return packTexel(Texel(0.25 * color, area, packed[0].y >> 16, 0.25 * sum, vec2(0.0)), kPlane);
-}
+const uint kAllPixels = 15u; // bits of a quad's pixels, rows first
 
-// The texel takes the nearest pixel's surface. A pixel behind it counts if its depth is within a pixel's step of a surface as steep
-// as its own, or as one 83 degrees from facing the camera.
-uvec4 edgeQuadTexel(ivec2 quad, uvec2 packed[4], float depth[4]) {
-  uint nearestMaterial = 0u, any = 0u;
-  float nearest = kNoDepth;
-  for (int i = 0; i < 4; ++i) {
-    uint material = packed[i].y >> 16;
+struct QuadSurface {
+  float depth;   // mean; without a surface minus that of what the quad shows, kNoDepth if nothing
+  uint material; // index + 1; without a surface that of a pixel without depth, or 0
+  uint pixels;
+  bool ends; // a pixel shows nothing, or what lies behind
+};
+
+// Largest change of depth from pixel to pixel on one surface, over a pixel's side: 83 degrees from facing the camera.
+const float kSteepest = 8.0;
+
+// `materials`: of the quad's pixels, a byte each.
+QuadSurface surfaceOf(float depth[4], uint materials) {
+  QuadSurface s = QuadSurface(0.0, 0u, 0u, false);
+  float front = kNoDepth, shown = kNoDepth, sum = 0.0;
+  uint any = 0u;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    uint material = materials >> 8 * i & 255u;
     any = max(any, material);
-    if (material == 0u || !(depth[i] > 0.0) || depth[i] >= nearest) continue;
-    nearest = depth[i];
-    nearestMaterial = material;
+    if (depth[i] > 0.0) shown = min(shown, depth[i]);
+    if (material == 0u || !(depth[i] > 0.0) || depth[i] >= front) continue;
+    front = depth[i];
+    s.material = material;
   }
-  if (nearestMaterial == 0u) return uvec4(0u, any << 24, 0u, 0u);
-  vec2 sides = squaredPixelSize(frame.camera, nearest);
-  float side = sqrt(min(sides.x, sides.y));
-  vec3 mean = vec3(0.0);
-  float sum = 0.0, weights = 0.0, areas = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    bool counts = depth[i] > 0.0 && packed[i].y >> 16 == nearestMaterial &&
-                  depth[i] - nearest <= 8.0 * side;
-    // Across an edge depths say nothing of slopes.
-    float w = counts ? 1.0 : 0.0, a = w;
-    mean += a * unpackHalves(packed[i]);
-    sum += counts ? depth[i] : 0.0;
-    weights += w;
-    areas += a;
+  if (s.material == 0u) return QuadSurface(-shown, any, 0u, false);
+  vec2 sides = squaredPixelSize(frame.camera, front);
+  float reach = kSteepest * sqrt(min(sides.x, sides.y));
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    bool behind = !(depth[i] > 0.0) || depth[i] - front > reach;
+    s.ends = s.ends || behind;
+    if (behind || (materials >> 8 * i & 255u) != s.material) continue;
+    sum += depth[i];
+    s.pixels |= 1u << i;
   }
-  // The nearest counts, so weights >= 1; areas are positive.
-  return packTexel(Texel(mean / areas, 0.25 * areas, nearestMaterial, sum / weights, vec2(0.0)), 0u);
+  s.depth = sum / float(bitCount(s.pixels)); // the nearest one counts
+  return s;
 }
 
-uvec4 texelOfQuad(ivec2 quad, uvec2 packed[4], float depth[4]) {
-  // An empty quad looks nothing up.
-  if ((packed[0].y | packed[1].y | packed[2].y | packed[3].y) >> 16 == 0u) return uvec4(0u);
-  if (!isWholeQuad(packed, depth)) return edgeQuadTexel(quad, packed, depth);
-  return wholeQuadTexel(packed, depth, areaOfQuad(quad, depth));
+const uint kEnds = 0x1000u;
+
+// depths[]: the depth. colors[]: mean color of the pixels; in the upper half of y the material, from bit 8 on the pixels, and kEnds.
+void keepSurface(ivec2 quad, QuadSurface s, vec3 color) {
+  depths[placeOf(quad)] = s.depth;
+  colors[placeOf(quad)] = packHalves(roundToHalf(color), s.material | s.pixels << 8 | (s.ends ? kEnds : 0u));
+}
+uint surfaceAt(int place) { return colors[place].y >> 16; }
+uint materialOf(uint surface) { return surface & 255u; }
+uint pixelsOf(uint surface) { return surface >> 8 & kAllPixels; }
+
+// Mean place of a quad's pixels, texels from the quad's center.
+vec2 centerOf(uint pixels) {
+  if (pixels == kAllPixels) return vec2(0.0);
+  float perPixel = 0.5 / float(max(bitCount(pixels), 1)); // finite where there is no surface, too
+  return vec2(bitCount(pixels & 10u), bitCount(pixels & 12u)) * perPixel - 0.25;
 }
 
-// Makes a quad's texel of level 1. `materials`: of its pixels, a byte each.
-void writeQuad(ivec2 quad, uint materials) {
-  uvec2 packed[4];
+// ---- Slope: the plane of least squares through a quad's depth, over the 3 x 3 quads around that lie on its surface
+
+// Change of depth per texel along an axis, to whichever neighbor is nearer in depth: the other one may lie across an edge.
+float nearerStep(int place, int stride, uint material, float own, float center) {
+  float best = 0.0, least = 3.0e38;
+  [[unroll]] for (int side = -1; side <= 1; side += 2) {
+    int at = place + side * stride;
+    uint bits = surfaceAt(at);
+    vec2 other = centerOf(pixelsOf(bits));
+    float change = (depths[at] - own) / (float(side) + (stride == 1 ? other.x : other.y) - center);
+    if (!(depths[at] > 0.0) || materialOf(bits) != material || abs(change) >= least) continue;
+    least = abs(change);
+    best = change;
+  }
+  return best;
+}
+
+// Of a surface that ends at a silhouette. Depth goes there like the root of the distance to it: the slope at the last quad, half its
+// side from the silhouette, is the root of 2 times that to the quad before, and its mean over the quad the root of 2 times more.
+const float kLimb = 1.41421356;
+
+// kLimb where the surface ends in the quad or in the direction in which its depth grows, and what lies there is not nearer.
+float limbOf(int place, int stride, float own, float perTexel, float reach) {
+  bool ends = (surfaceAt(place) & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
+  return ends ? kLimb : 1.0;
+}
+
+// The texel of a quad with a surface.
+uvec4 texelOf(ivec2 first, ivec2 quad) {
+  int place = placeOf(quad);
+  float own = depths[place];
+  uint material = materialOf(surfaceAt(place)), pixels = pixelsOf(surfaceAt(place));
+  vec2 center = centerOf(pixels), size = texelSize(own, 1u), ray = facingRayAt(pixelOf(1u, first + quad));
+  vec2 perTexel = vec2(nearerStep(place, 1, material, own, center.x), nearerStep(place, kRow, material, own, center.y));
+  vec2 perSize = 1.0 / max(size, vec2(1.0e-30));
+  // A surface is another where it is a texel's side off along the ray.
+  float perSquare = inverseSpread(perTexel * perSize, ray, size) * (1.0 + dot(ray, ray));
+  vec2 tilt = vec2(0.0), spread = vec2(0.0);
+  // Not unrolled, here and below: small frames wait for code.
+  [[dont_unroll]] for (int i = 0; i < 9; ++i) { // the quad itself adds nothing
+    ivec2 away = ivec2(i % 3, i / 3) - 1;
+    int at = place + away.y * kRow + away.x;
+    uint bits = surfaceAt(at);
+    vec2 step = vec2(away) + centerOf(pixelsOf(bits)) - center;
+    float off = depths[at] - own - dot(perTexel, step);
+    float w = depths[at] > 0.0 && materialOf(bits) == material ? max(1.0 - off * off * perSquare, 0.0) : 0.0;
+    tilt += w * off * step;
+    spread += w * step * step;
+  }
+  perTexel += tilt / max(spread, vec2(1.0e-3));
+  float reach = 2.0 * kSteepest * min(size.x, size.y);
+  vec2 limb = vec2(limbOf(place, 1, own, perTexel.x, reach), limbOf(place, kRow, own, perTexel.y, reach));
+  vec2 slope = limb * perTexel * perSize;
+  float area = areaOf(1u, first + quad, limb * slope) * 0.25 * float(bitCount(pixels));
+  return packTexel(Texel(unpackHalves(colors[place]), area, material, own, slope), pixels == kAllPixels ? kPlane : 0u);
+}
+
+// ---- Pixels
+
+// Loads a quad of the block, keeps its surface and, where its cell has material, copies its pixels.
+void readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
   float depth[4];
   vec4 source[4];
   // All loads come before the first use, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 at = inImage(withinRect(2 * quad + ivec2(i & 1, i >> 1)));
+    ivec2 at = inImage(withinRect(2 * (first + quad) + ivec2(i & 1, i >> 1)));
     depth[i] = frontDistance(at);
-    source[i] = texelFetch(sourceImage, at, 0);
+    source[i] = holdsMaterial ? texelFetch(sourceImage, at, 0) : vec4(0.0);
   }
+  QuadSurface s = surfaceOf(depth, materials);
   float least = kNoDepth, most = 0.0;
+  vec3 sum = vec3(0.0);
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    uint material = materials >> 8 * i & 255u;
+    if ((materials >> 8 * i & 255u) == 0u) continue;
     vec3 color = sanitize(source[i].rgb);
-    packed[i] = packHalves(roundToHalf(color), material);
-    if (material == 0u) continue;
-    if (pass.value.x != 0u) imageStore(destinationImage, inImage(2 * quad + ivec2(i & 1, i >> 1)), vec4(asStored(color), source[i].a));
+    if (pass.value.x != 0u) imageStore(destinationImage, inImage(2 * (first + quad) + ivec2(i & 1, i >> 1)), vec4(asStored(color), source[i].a));
+    if ((s.pixels >> i & 1u) != 0u) sum += roundToHalf(color);
     if (!(depth[i] > 0.0)) continue;
     least = min(least, depth[i]);
     most = max(most, depth[i]);
   }
-  writeLevel(1u, quad, texelOfQuad(quad, packed, depth));
+  keepSurface(quad, s, sum / float(max(bitCount(s.pixels), 1)));
   // Read first: most invocations have nothing to add. An old value costs an atomic more and changes nothing.
   if (!(most > 0.0)) return;
   if (floatBitsToUint(least) < nearest) atomicMin(nearest, floatBitsToUint(least));
   if (floatBitsToUint(most) > farthest) atomicMax(farthest, floatBitsToUint(most));
 }
 
+// Loads the surface of a quad around the block.
+void readAround(ivec2 first, ivec2 quad, ivec4 rect) {
+  float depth[4];
+  uint materials = 0u;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 at = inImage(2 * (first + quad)) + ivec2(i & 1, i >> 1), within = clamp(at, rect.xy, rect.zw - 1);
+    depth[i] = frontDistance(within);
+    materials |= (at == within ? materialAt(within) : 0u) << 8 * i;
+  }
+  keepSurface(quad, surfaceOf(depth, materials), vec3(0.0));
+}
+
+bool cellHolds(ivec2 cell) { return (cells[cell.y >> 2] & cellBit(cell)) != 0u; }
+
 void main() {
-  uint block = gl_WorkGroupID.x, invocation = gl_LocalInvocationIndex;
+  uint block = gl_WorkGroupID.x;
+  int invocation = int(gl_LocalInvocationIndex);
   ivec2 first = firstPixel(block) / 2; // quad
   // The rect in pixels of the image takes 8 registers less than pixels of the lattice for each load.
   ivec4 rect = ivec4(inImage(ivec2(frame.rect.xy)), inImage(ivec2(frame.rect.zw)));
-  uint materials[kQuads * kQuads];
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    materials[i] = 0u;
-    [[unroll]] for (int k = 0; k < 4; ++k) {
-      ivec2 at = inImage(2 * first) + 2 * quadInBlock(i) + ivec2(k & 1, k >> 1);
-      materials[i] |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
-    }
-  }
-  if (invocation < 2u) cells[invocation] = 0u;
-  if (invocation == 0u) {
+  if (invocation < 2) cells[invocation] = 0u;
+  if (invocation == 0) {
     nearest = floatBitsToUint(kNoDepth);
     farthest = 0u;
   }
   barrier();
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    ivec2 cell = cellOfQuad(quadInBlock(i));
-    if (materials[i] != 0u && (cells[cell.y >> 2] & cellBit(cell)) == 0u) atomicOr(cells[cell.y >> 2], cellBit(cell));
+  [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    ivec2 quad = quadInBlock(i), cell = cellOfQuad(quad);
+    uint materials = 0u;
+    [[unroll]] for (int k = 0; k < 4; ++k) {
+      ivec2 at = inImage(2 * first) + 2 * quad + ivec2(k & 1, k >> 1);
+      materials |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
+    }
+    colors[placeOf(quad)].x = materials;
+    if (materials != 0u && !cellHolds(cell)) atomicOr(cells[cell.y >> 2], cellBit(cell));
   }
   barrier();
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    ivec2 cell = cellOfQuad(quadInBlock(i)), quad = first + quadInBlock(i);
-    if ((cells[cell.y >> 2] & cellBit(cell)) != 0u && contains(levelRect(1u), quad)) writeQuad(quad, materials[i]);
+  bool some = (cells[0] | cells[1]) != 0u;
+  // Early, so that the pixels' loads hide the latency.
+  if (goesByLists() && invocation < 9) countBlock(block, invocation, uvec2(cells[0], cells[1]));
+  if (some) {
+    if (invocation < kAround) readAround(first, quadAround(invocation), rect);
+    [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+      ivec2 quad = quadInBlock(i);
+      readQuad(first, quad, colors[placeOf(quad)].x, cellHolds(cellOfQuad(quad)));
+    }
   }
   barrier();
-  if (invocation < 2u) writeWord(blockWord(block, kCellWord + invocation), cells[invocation]);
-  if (invocation == 2u) writeWord(blockWord(block, kNearestWord), nearest);
-  if (invocation == 3u) writeWord(blockWord(block, kFarthestWord), farthest);
-  // All lists become empty: a recording may run more than once.
-  if (block == 0u) {
-    if (invocation < uint(PELLUCID_LISTS)) lists.commands[invocation].x = 0u;
-    for (uint i = invocation; i < lists.maps.x * uint(PELLUCID_ENTRY_GROUP_WORDS); i += uint(GROUP_SIDE * GROUP_SIDE)) entryGroups[i] = 0u;
+  if (some) {
+    [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+      ivec2 quad = quadInBlock(i);
+      if (!cellHolds(cellOfQuad(quad)) || !contains(levelRect(1u), first + quad)) continue;
+      uint bits = surfaceAt(placeOf(quad));
+      writeLevel(1u, first + quad, pixelsOf(bits) != 0u ? texelOf(first, quad) : uvec4(0u, materialOf(bits) << 24, 0u, 0u));
+    }
   }
+  if (invocation < 2) writeWord(blockWord(block, kCellWord + uint(invocation)), cells[invocation]);
+  if (!goesByLists()) return;
+  if (block == 0u && invocation < PELLUCID_LISTS) lists.commands[invocation].ran.x = 0u;
+  if (farthest == 0u) return;
+  for (uint i = uint(invocation); i < lists.maps.x * kEntryGroupRows; i += uint(GROUP_SIDE * GROUP_SIDE))
+    listEntryGroups(i / kEntryGroupRows, block, int(i % kEntryGroupRows), uintBitsToFloat(nearest), uintBitsToFloat(farthest));
 }

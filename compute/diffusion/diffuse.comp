@@ -7,6 +7,7 @@
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #define GROUP_ROWS (PELLUCID_BLOCK_GROUP / 2)
 #include "diffusion/texel.glsl"
+#include "frame/lists.glsl"
 #include "gather/probe.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_FILTERED_PROBES) uniform utexture2D probesImage;
@@ -302,7 +303,18 @@ void diffuse(ivec2 first) {
     diffuseEdge(first, 4 * ivec2(edges[edge] & 255u, edges[edge] >> 8) + inTexel);
 }
 
+// Empties the lists: a recording may run more than once. This pass is the last that goes by them, and its command has been read.
+void emptyLists() {
+  uint invocation = gl_LocalInvocationIndex, words = counterWords() + lists.maps.x * uint(PELLUCID_ENTRY_GROUP_WORDS);
+  if (invocation < uint(PELLUCID_LISTS)) {
+    lists.commands[invocation].ran.x = lists.commands[invocation].groups.x;
+    lists.commands[invocation].groups.x = 0u;
+  }
+  for (uint i = counterWords() + invocation; i < words; i += uint(kInvocations)) listWords[i] = 0u;
+}
+
 void main() {
+  if (goesByLists() && gl_WorkGroupID.xy == uvec2(0u)) emptyLists();
   ivec2 first;
   if (materialPart(ivec2(kPixelsX, kPixelsY), first)) diffuse(first);
 }

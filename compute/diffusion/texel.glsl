@@ -92,6 +92,15 @@ vec2 facingRayAt(vec2 pixel) {
   return frame.facingRay[0].xy + pixel.x * frame.facingRay[0].zw + pixel.y * frame.facingRay[1].xy;
 }
 
+// The pixel that a texel's center lies at.
+vec2 pixelOf(uint level, ivec2 texel) { return (vec2(texel) + 0.5) * exp2(float(level)) - 0.5; }
+
+// Unit normal towards the eye, view space. `ray`: of facingRayAt.
+vec3 normalOfSlope(vec2 slope, vec2 ray) {
+  // The depth's component is 1 along the ray, so that the length is not 0.
+  return normalize(vec3(slope.x * frame.axes.xy + slope.y * frame.axes.zw, -(1.0 + dot(slope, ray)) * frame.camera.range.x));
+}
+
 // A surface's tangent plane, as a view ray meets it. For a step x at one depth, the plane's point lies dot(x, along) / sqrt(ray2)
 // along the ray.
 struct TangentPlane {
@@ -124,6 +133,26 @@ float tangentPlaneWeight(TangentPlane plane, float off, vec2 x, vec2 falloff) {
   return rest * rest;
 }
 
+// Unit normal, towards the eye, of the surface that a pixel shows: linear between the quads around it, as far as they lie on one
+// surface with the pixel. pyramidImage holds level 1. `front`, `material`: of the pixel.
+vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
+  vec2 size = texelSize(front, 0u), ray = facingRayAt(vec2(pixel));
+  ivec2 toward = 2 * (pixel & 1) - 1;
+  vec3 sum = vec3(0.0);
+  float total = 0.0;
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 quad = (pixel >> 1) + toward * ivec2(i & 1, i >> 1);
+    // The pixel's own quad has been written, as the pixel has a material.
+    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenTexel(1u, quad, false));
+    float off = front - t.depth - dot(t.slope, (vec2(pixel) - pixelOf(1u, quad)) * size);
+    float w = ((i & 1) == 0 ? 0.75 : 0.25) * (i < 2 ? 0.75 : 0.25) * exp2(-off * off * inverseSpread(t.slope, ray, size));
+    w = t.area != 0.0 && t.material == material ? w + 1.0e-6 : 0.0;
+    sum += w * normalOfSlope(t.slope, ray);
+    total += w;
+  }
+  return total > 0.0 ? normalize(sum) : normalOfSlope(vec2(0.0), ray); // the normals are within 90 degrees of the ray
+}
+
 // Texels around a texel lie on its plane up to this part of the squared length of its side.
 const float kPlaneOffset = 0.1;
 
@@ -131,9 +160,6 @@ const float kPlaneOffset = 0.1;
 // errors on the scenes of `./run sweep` of those that let no more light over a gap than the profile does.
 const vec2 kDownsampleFalloff = vec2(PELLUCID_DOWNSAMPLE_FALLOFF), kStretchFalloff = vec2(PELLUCID_STRETCH_FALLOFF),
            kUpsampleFalloff = vec2(PELLUCID_UPSAMPLE_FALLOFF), kPixelFalloff = vec2(PELLUCID_PIXEL_FALLOFF);
-
-// The pixel that a texel's center lies at.
-vec2 pixelOf(uint level, ivec2 texel) { return (vec2(texel) + 0.5) * exp2(float(level)) - 0.5; }
 
 // Projected-area weight of a texel: the normal is (-slope, 1 + slope . ray) of a pixel's columns, its rows and the depth.
 float areaOf(uint level, ivec2 texel, vec2 slope) {

@@ -7,10 +7,10 @@
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #include "diffusion/profile.glsl"
 
-layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 and 5; pyramidImage has all others
+layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 to 7; pyramidImage has 2 and 3
 
 uvec4 levelTexel(uint level, ivec2 texel) {
-  if (level != 4u && level != 5u) return writtenTexel(level, texel, false);
+  if (level < 4u) return writtenTexel(level, texel, false);
   return contains(levelRect(level), texel) ? texelFetch(coarserLevelsImage, inAtlas(level, texel), 0) : uvec4(0u);
 }
 

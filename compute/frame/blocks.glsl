@@ -1,4 +1,4 @@
-// Blocks of 64 x 64 pixels of the image. base_level.comp finds which of them hold material, list_blocks.comp lists these, and
+// Blocks of 64 x 64 pixels of the image. base_level.comp finds which of them hold material and lists these;
 // later passes do one listed block, or a part of it, a group.
 //
 // The image of words holds PELLUCID_BLOCK_WORDS a block, row by row, and then three lists of words: blocks with material or
@@ -11,9 +11,9 @@
 layout(set = 0, binding = PELLUCID_BINDING_BLOCKS, r32ui) uniform uimage2D blocksImage;
 
 const int kBlockShift = 6, kCellShift = 3; // of PELLUCID_BLOCK and PELLUCID_CELL
-// Words of a block: two with a bit for each cell of 8 x 8 pixels, rows 0 to 3 and 4 to 7; the bits of the nearest and of the
-// farthest planar distance of its surfaces; 1 if the block or one beside it has material.
-const uint kCellWord = 0u, kNearestWord = 2u, kFarthestWord = 3u, kNearWord = 4u;
+// Words of a block: two with a bit for each cell of 8 x 8 pixels, rows 0 to 3 and 4 to 7; 1 if the block or one beside it has
+// material.
+const uint kCellWord = 0u, kNearWord = 2u;
 
 ivec2 wordPlace(uint word) {
   return ivec2(word & ((1u << PELLUCID_BLOCK_WORDS_SHIFT) - 1u), word >> PELLUCID_BLOCK_WORDS_SHIFT);
@@ -38,7 +38,7 @@ uint entryList() { return frame.blocks.z + 2u * blockCount(); }
 bool goesByLists() { return frame.blocks.w != 0u; }
 
 // The word of the work group's block, whose x counts blocks. `list`: its first word. Lists are read as far as their commands
-// count, so that words hold what list_blocks.comp wrote.
+// count, so that words hold what base_level.comp wrote.
 uint listedBlock(uint list) { return goesByLists() ? readWord(list + gl_WorkGroupID.x) : gl_WorkGroupID.x; }
 
 // A listed group of entry points: its column and row among the groups of its map, which are at most 64 x 64.

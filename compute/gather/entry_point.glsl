@@ -1,5 +1,4 @@
-// Entry points of light: the facts of a texel of a shadow map that a sample needs, made once for all pixels, and means of
-// 2x2 to 8x8 of them for samples that stand for a larger part of the map.
+// Entry points of light: the facts of a texel of a shadow map that a sample needs, made once for all pixels.
 #ifndef PELLUCID_ENTRY_POINT_GLSL
 #define PELLUCID_ENTRY_POINT_GLSL
 
@@ -27,8 +26,7 @@ struct EntryPoint {
 const float kLeastCosine = 0.2;
 
 const float kNoExit = 6.0e4; // fits in a half
-const uvec4 kNoEntry = uvec4(0u), kSeveralSurfaces = uvec4(0u, 0u, 0u, 0x100u); // several: no mean makes sense
-const int kLastEntryLevel = 3; // means of 8x8
+const uvec4 kNoEntry = uvec4(0u);
 
 uvec4 packEntry(EntryPoint r) {
   uint cosine = uint(clamp(r.cosine * 255.0 + 0.5, 1.0, 255.0));
@@ -43,13 +41,6 @@ EntryPoint unpackEntry(uvec4 bits) {
   vec2 parts = unpackHalf2x16(bits.z);
   return EntryPoint(uintBitsToFloat(bits.x), fromOctahedral(unpackSnorm2x16(bits.y)), parts.x, parts.y,
                     float(bits.w & 0xFFu) / 255.0, unpackHalf2x16(bits.w >> 16).x, bits.w >> 8 & 0xFFu);
-}
-
-// Place of a level's entry in the image. Level 1 is beside the first level, each coarser one below the level before.
-// `first`: of the first level; `size`: of that level, whole groups.
-ivec2 entryPlace(ivec2 first, int level, ivec2 size) {
-  ivec2 corner = level == 0 ? ivec2(0) : ivec2(size.x, size.y - (size.y >> (level - 1)));
-  return corner + (first >> level);
 }
 
 #endif

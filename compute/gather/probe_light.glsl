@@ -84,22 +84,7 @@ bool findMap(LightConstants light, vec3 position, out uint map, out vec3 point) 
   return false;
 }
 
-uvec4 entryAt(uint map, ivec2 entry, int level) {
-  ivec2 size = ivec2(pass.value.z & 0xFFFFu, pass.value.z >> 16 & 0x7FFFu);
-  return texelFetch(entriesImage, entryPlace(maps[map].place.xy + entry, level, size), 0);
-}
-
-// The entry of a place in the map from a level or, where that has several surfaces, from the first. `off`: from the place to the
-// middle of what the entry stands for, in entry points.
-uvec4 fetchEntry(uint map, vec2 place, int level, out vec2 off) {
-  uvec4 bits = entryAt(map, ivec2(place), level);
-  if (bits == kSeveralSurfaces) {
-    level = 0;
-    bits = entryAt(map, ivec2(place), 0);
-  }
-  off = (vec2(ivec2(place) >> level) + 0.5) * float(1 << level) - place;
-  return bits;
-}
+uvec4 entryAt(uint map, vec2 place) { return texelFetch(entriesImage, maps[map].place.xy + ivec2(place), 0); }
 
 // How far the lit surface is from a point along its light ray: scene units, or a fraction of the way to the light.
 float distanceAhead(bool parallel, float depth, float own) { return parallel ? depth - own : 1.0 - depth / own; }
@@ -108,7 +93,7 @@ float distanceAhead(bool parallel, float depth, float own) { return parallel ? d
 struct GatherRings {
   vec3 axis;
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
-  float entrySide;     // side of an entry point of the first level
+  float entrySide;     // side of an entry point
   float ahead;         // along the light's ray from x to the lit surface
   float tolerance;     // how far a receiver's own exit may be off
   float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
@@ -124,17 +109,16 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
                  out GatherRings rings) {
   float mm = frame.camera.range.w;
   bool parallel = directional(light);
-  float facing = x.hasNormal ? max(-dot(x.normal, toLight), 0.0) : 0.0;
+  float facing = max(-dot(x.normal, toLight), 0.0);
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
   rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
-  vec2 off;
-  uvec4 bits = fetchEntry(rings.map, placeInMap(parallel, point), 0, off);
+  uvec4 bits = entryAt(rings.map, placeInMap(parallel, point));
   rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
-  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(x.hasNormal ? dot(x.normal, toLight) : 0.0), kSteepestOwn)), 1.0e-12);
+  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   EntryPoint own = unpackEntry(bits);
@@ -144,7 +128,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float t = clamp(rings.ahead, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
-  bits = findMap(light, guess, map, point) ? fetchEntry(map, placeInMap(parallel, point), 0, off) : kNoEntry;
+  bits = findMap(light, guess, map, point) ? entryAt(map, placeInMap(parallel, point)) : kNoEntry;
   if (holdsSurface(bits)) {
     vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
                          (parallel ? toLight : light.position.xyz - guess);
@@ -168,9 +152,6 @@ const float kLastRing = 1.0e12; // squared radius of what lies beyond all sample
 // Largest distances looked for, 2 / kappa each, beyond which a lit surface brings nothing to an unlit point: T is below 1e-5.
 const float kFarthestLit = 6.0;
 
-// Side of the part of the map that a sample stands for, per radius of its ring: a twelfth of the ring.
-const float kSampleSide = 0.5;
-
 GatherSlab slabOf(uint m, vec4 lengths, float h) {
   float place = gatherPlace(lengths, h);
   // Whatever a NaN converts to, the entry is one of the material's.
@@ -184,8 +165,8 @@ GatherSlab slabOf(uint m, vec4 lengths, float h) {
 float insideAt(GatherRings rings, LightConstants light, Surface x, uint map, vec3 to, float f) {
   float mm = frame.camera.range.w;
   vec3 on = x.position - f / mm * to, point = mapPoint(map, vec4(on, 1.0));
-  vec2 off, place = placeInMap(directional(light), point);
-  uvec4 bits = isInMap(map, place) ? fetchEntry(map, place, 0, off) : kNoEntry;
+  vec2 place = placeInMap(directional(light), point);
+  uvec4 bits = isInMap(map, place) ? entryAt(map, place) : kNoEntry;
   if (!lightEnters(bits)) return 1.0;
   EntryPoint entry = unpackEntry(bits); // without an exit, kNoExit is beyond all
   float perAhead = directional(light) ? 1.0 : distance(light.position.xyz, on);
@@ -243,9 +224,9 @@ struct Gathered {
 void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
                float flux, float axisCosine) {
   float squared = dot(to, to);
-  float opposite = x.hasNormal ? 0.5 - 0.5 * dot(x.normal, entry.normal) : 1.0; // 1 - m
+  float opposite = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
   float through = max(-dot(entry.normal, to), 0.0);
-  float squaredH = x.hasNormal ? through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4) : through * through;
+  float squaredH = through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4);
   float h = sqrt(min(squaredH, squared));
   float curved = (1.0 - opposite) * min(squaredH / max(squared, 1.0e-12), 1.0);
   vec3 comes = opposite * gatherTransmitted(lengths, slabOf(m, lengths, h), curved, h, near, far);
@@ -278,18 +259,16 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   [[dont_unroll]] for (uint i = 0u; i < samples; ++i) {
     // Lengths are mm from the foot, across and along the ring.
     float spread = gatherSpread(lengths, (float(i) + pattern.within) * perSample);
-    float radius = sqrt(gatherSquaredRadius(rings.t, spread));
-    vec2 offset = radius * direction;
+    vec2 offset = sqrt(gatherSquaredRadius(rings.t, spread)) * direction;
     direction = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction; // the golden angle
-    int level = clamp(int(log2(max(kSampleSide * radius / rings.entrySide, 1.0))), 0, kLastEntryLevel);
     vec3 at = point + offset.x * pointAcross + offset.y * pointAlong;
     vec3 s = onRing(center, across, along, offset);
     uint map = rings.map;
     bool inside = isInMap(map, placeInMap(parallel, at));
     // A cube's seams are no borders.
     if (!inside && light.meta.z > 1u) inside = findMap(light, x.position + s / mm, map, at);
-    vec2 off;
-    uvec4 bits = inside ? fetchEntry(map, placeInMap(parallel, at), level, off) : kNoEntry;
+    vec2 place = placeInMap(parallel, at);
+    uvec4 bits = inside ? entryAt(map, place) : kNoEntry;
     float from = inner;
     spread = gatherSpread(lengths, float(i + 1u) * perSample);
     inner = i + 1u == samples ? kLastRing : gatherSquaredRadius(rings.t, spread);
@@ -299,6 +278,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     vec3 toLight = parallel ? lightRay * mm : (light.position.xyz - x.position) * mm - s;
     float ahead = distanceAhead(parallel, entry.depth, at.z);
     // The entry point's plane goes on to the sample's own ray, if the plane faces the light: a shown normal may turn away.
+    vec2 off = floor(place) + 0.5 - place;
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
     float towards = dot(entry.normal, toLight), most = 2.0 * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
     if (towards > 0.0) ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
@@ -328,7 +308,7 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, BodyF
   Incident incident = lightAt(light, x.position);
   GatherRings rings;
   if (!gatherRings(light, x, incident.toLight, incident.distanceTo, materials[m].gather.lengths.z, rings)) return vec3(0.0);
-  float cosine = x.hasNormal ? max(dot(x.normal, incident.toLight), 0.0) : 0.0;
+  float cosine = max(dot(x.normal, incident.toLight), 0.0);
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);

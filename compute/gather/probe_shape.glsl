@@ -2,40 +2,28 @@
 #ifndef PELLUCID_PROBE_SHAPE_GLSL
 #define PELLUCID_PROBE_SHAPE_GLSL
 
-#include "frame/frame.glsl"
+#include "diffusion/texel.glsl"
 #include "gather/probe.glsl"
 #include "gather/probe_light.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
-float frontBeside(ivec2 pixel, uint material) {
-  ivec2 at = inImage(withinRect(pixel));
-  return materialAt(at) == material ? frontDistance(at) : -1.0;
-}
-
-// Of the depths of a pixel and its neighbors of the same material.
-vec3 depthsNormal(ivec2 pixel, uint material, float front) {
-  vec4 beside = vec4(frontBeside(pixel + ivec2(1, 0), material), frontBeside(pixel - ivec2(1, 0), material),
-                     frontBeside(pixel + ivec2(0, 1), material), frontBeside(pixel - ivec2(0, 1), material));
-  return normalOfDepths(frame.camera, pixel, front, beside);
-}
-
-// Step from a probe to a pixel beside it.
+// Step from a probe to a quad beside it.
 struct Beside {
   vec4 apart; // change of position, mm; w: 1 where the surface goes on, down to 0 at two to three times `reach`
   vec3 turn;  // change of the normal
 };
 
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
-  ivec2 at = withinRect(pixel);
-  uint material = materialAt(inImage(at));
-  float front = material != 0u ? frontDistance(inImage(at)) : -1.0;
-  vec3 normal = front > 0.0 ? depthsNormal(at, material, front) : vec3(0.0);
-  Surface s = makeSurface(viewRay(frame.camera, at), front, -1.0, normal);
-  vec3 apart = (s.position - x.position) * frame.camera.range.w;
+  ivec2 quad = pixel >> 1;
+  Texel t = unpackTexel(writtenTexel(1u, quad, false));
+  vec2 center = pixelOf(1u, quad);
+  ViewRay ray = viewRay(frame.camera, center);
+  vec3 apart = (ray.origin + t.depth * ray.direction - x.position) * frame.camera.range.w;
   float ratio = dot(apart, apart) / max(reach * reach, 1.0e-30);
-  bool there = at == pixel && front > 0.0 && s.hasNormal;
-  return Beside(vec4(apart, there ? clamp((9.0 - ratio) / 5.0, 0.0, 1.0) : 0.0), there ? s.normal - x.normal : vec3(0.0));
+  bool there = t.area != 0.0;
+  return Beside(vec4(apart, there ? clamp((9.0 - ratio) / 5.0, 0.0, 1.0) : 0.0),
+                there ? normalOfSlope(t.slope, facingRayAt(center)) - x.normal : vec3(0.0));
 }
 
 // Step across the probe, from one side to the other.
@@ -52,7 +40,7 @@ ivec2 stepsOf(Surface x, ViewRay ray, float front, float reach) {
   sideX -= ray.direction * (dot(x.normal, sideX) / facing);
   sideY -= ray.direction * (dot(x.normal, sideY) / facing);
   vec2 size = sqrt(vec2(dot(sideX, sideX), dot(sideY, sideY))) * c.range.w;
-  return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(1.0), vec2(1.0e4)));
+  return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(2.0), vec2(1.0e4))); // at least a quad
 }
 
 // Mean curvature of the surface around x, 1/mm, positive where convex; 0 where it does not go on.

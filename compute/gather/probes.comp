@@ -10,10 +10,8 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform uimage2D probesImage;
 
-const uint kAdds = 1u << 31; // of pass.value.z
-
-// Finds the first pixel of the cell with a solid's surface: all of the place but its normal.
-// Loads of a pixel are at once, so that their latencies overlap: the first pixel is the one, as a rule.
+// Finds the first pixel of the cell with a solid's surface: all of the place but its normal. Loads of a pixel are at once, so that
+// their latencies overlap: the first pixel is the one, as a rule.
 bool findSurface(ivec2 cell, int side, out ProbePlace place) {
   for (place.index = 0; place.index < side * side; ++place.index) {
     ivec2 pixel = pixelInCell(cell, side, place.index), within = withinRect(pixel);
@@ -31,22 +29,18 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
   uint m = place.material - 1u;
   ivec2 pixel = pixelInCell(cell, side, place.index);
   ViewRay ray = viewRay(frame.camera, pixel);
-  Surface x = makeSurface(ray, place.front, -1.0, depthsNormal(pixel, place.material, place.front));
-  place.normal = x.hasNormal ? x.normal : -x.view;
+  place.normal = normalOfPixel(pixel, place.front, place.material);
+  Surface x = Surface(ray.origin + place.front * ray.direction, place.normal, normalize(ray.direction), -1.0, place.material);
+  BodyFactors body = bodyAt(pixel, x, ray, place.front, m);
   // Packed before lights are gathered, whose sums need the registers.
-  uvec4 bits = packPlace(place);
-  BodyFactors body = BodyFactors(vec3(1.0), vec3(1.0));
+  uvec4 bits = withReturned(packPlace(place), body.returned - 1.0);
   vec3 added = vec3(0.0);
-  if (x.hasNormal) {
-    body = bodyAt(pixel, x, ray, place.front, m);
-    bits = withReturned(bits, body.returned - 1.0);
-  }
   Pattern pattern = patternOf(cell, m, place.front);
   for (uint i = 0u; i < pass.value.y; ++i) {
     LightConstants light = lights[i];
     added += light.radiance.rgb * gatherLight(m, light, x, pattern, body);
   }
-  if ((pass.value.z & kAdds) != 0u) added += addedOf(imageLoad(probesImage, cell));
+  if (pass.value.z != 0u) added += addedOf(imageLoad(probesImage, cell));
   return withAdded(bits, added);
 }
 

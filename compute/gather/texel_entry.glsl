@@ -3,6 +3,7 @@
 #define PELLUCID_TEXEL_ENTRY_GLSL
 
 #define MORE_SHADOW_IMAGES
+#include "diffusion/texel.glsl"
 #include "gather/entry_point.glsl"
 #include "frame/shadow_images.glsl"
 #include "lib/shadow.glsl"
@@ -43,32 +44,21 @@ struct Shown {
   ivec2 pixel;  // with a front
   float planar; // of the point
   float front;  // of a surface with material; -1: none
-  vec3 normal;  // unit, outward; 0: not known
+  vec3 normal;  // unit, outward
   float above;  // how far the point lies before the surface, along its normal
 };
-
-// Front of a pixel that has a material; others show nothing, whatever depth they hold, as their light is not diffused.
-float frontAround(ivec2 pixel) {
-  ivec2 at = inImage(withinRect(pixel));
-  float front = frontDistance(at);
-  return materialAt(at) != 0u ? front : -1.0;
-}
-
-// From the depths around.
-vec3 shownNormal(ivec2 pixel, float front) {
-  vec4 beside = vec4(frontAround(pixel + ivec2(1, 0)), frontAround(pixel - ivec2(1, 0)), frontAround(pixel + ivec2(0, 1)),
-                     frontAround(pixel - ivec2(0, 1)));
-  return normalOfDepths(frame.camera, pixel, front, beside);
-}
 
 Shown shownAt(vec3 position) {
   Shown s = Shown(ivec2(0), position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
   ivec2 pixel;
   if (!projectToPixel(frame.camera, position, pixel) || !insideRect(pixel)) return s;
   s.pixel = pixel;
-  s.front = frontAround(pixel);
-  if (!(s.front > 0.0)) return s;
-  s.normal = shownNormal(pixel, s.front);
+  // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused.
+  uint material = materialAt(inImage(pixel));
+  float front = frontDistance(inImage(pixel));
+  if (material == 0u || !(front > 0.0)) return s;
+  s.front = front;
+  s.normal = normalOfPixel(pixel, front, material);
   ViewRay ray = viewRay(frame.camera, pixel);
   s.above = dot(s.normal, position - ray.origin - s.front * ray.direction);
   return s;
@@ -96,7 +86,7 @@ float largerPixelSide(float front) {
 // tell and its map leaves open. Limbs count only where a bias moved the map's points, which then know less of them than the
 // pixels. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
 bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, float offset, bool biased) {
-  if (s.normal == vec3(0.0) || (!biased && slopeToCamera(s.pixel, s.normal) >= kSteepestSeen)) return false;
+  if (!(s.front > 0.0) || (!biased && slopeToCamera(s.pixel, s.normal) >= kSteepestSeen)) return false;
   float cosine = dot(s.normal, toLight);
   return cosine > -kMostTurned && abs(s.above) <= min(tolerance, 0.5 * largerPixelSide(s.front)) + offset + uncertain * abs(cosine);
 }
@@ -234,22 +224,18 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0;
   // An offset along normals is undone by its mean, which is off by as much where the light grazes.
   float offset = abs(map.offsets.z);
-  Shown shown = shownAt(y.position);
-  bool isShown = liesOn(shown, toLight, tolerance, uncertain, offset, biased);
-  if (map.offsets.y != 0.0 && !isShown && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE) {
+  Shown shown;
+  bool isShown = false;
+  MapPoint tried = y;
+  [[dont_unroll]] for (int i = 0; !isShown && i <= kMostAgain; ++i) {
+    Shown next = shownAt(tried.position);
+    isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
+    if (i == 0 || isShown) shown = next;
+    if (isShown) y = tried;
     // The slope of what the camera shows undoes the bias again, until that leads to a point of what the camera shows there.
-    Shown next = shown;
-    for (int i = 0; i < kMostAgain && !isShown && next.normal != vec3(0.0); ++i) {
-      float bias = map.offsets.x + map.offsets.y * slopeOnPlane(map, y.position, next.normal);
-      MapPoint again = pointOf(map, texel, asDrawn - bias);
-      if (!(abs(again.depth) < kNoDepth)) break;
-      next = shownAt(again.position);
-      isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
-      if (isShown) {
-        y = again;
-        shown = next;
-      }
-    }
+    if (map.offsets.y == 0.0 || map.meta.y != PELLUCID_SHADER_DEPTH_DEVICE || !(next.front > 0.0)) break;
+    tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, next.normal));
+    if (!(abs(tried.depth) < kNoDepth)) break;
   }
   if (isShown) normal = shown.normal;
 

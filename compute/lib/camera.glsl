@@ -26,10 +26,11 @@ struct ViewRay {
   vec3 origin, direction; // direction has planar length 1
 };
 
-ViewRay viewRay(Camera camera, ivec2 pixel) {
-  vec4 r = camera.rayBase + float(pixel.x) * camera.rayX + float(pixel.y) * camera.rayY;
+ViewRay viewRay(Camera camera, vec2 pixel) {
+  vec4 r = camera.rayBase + pixel.x * camera.rayX + pixel.y * camera.rayY;
   return ViewRay(vec3(r.zw, 0.0), vec3(r.xy, camera.range.x));
 }
+ViewRay viewRay(Camera camera, ivec2 pixel) { return viewRay(camera, vec2(pixel)); }
 
 // C d - A of a device depth d; 0 where d is at infinity.
 float depthDenominator(Camera camera, float depth) {

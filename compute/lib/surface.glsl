@@ -5,23 +5,14 @@
 
 // A pixel's surface. View space, scene units.
 struct Surface {
-  vec3 position, normal, view; // view: unit, from the eye
+  vec3 position, normal, view; // unit: normal, outward; view, from the eye
   float chord;                 // along the view ray; -1: unknown
-  bool hasNormal;
-  uint material; // index + 1; 0: not known
+  uint material;               // index + 1
 };
 
 // R(h) / rho of a slab that transmits t: the part of a half-space's reflectance that is left. `slab`: one of
 // GatherConstants::reflectance.
 float keptReflectance(vec4 slab, float t) { return clamp(slab.x - sqrt(max(slab.y * t * t + slab.z, 0.0)), 0.0, 1.0); }
-
-// `normal`: any length, view space; (0, 0, 0): none.
-Surface makeSurface(ViewRay ray, float planar, float chord, vec3 normal) {
-  float squared = dot(normal, normal);
-  bool hasNormal = isWithin(squared, 1.0e-8, 1.0e8);
-  if (hasNormal) normal *= inversesqrt(squared);
-  return Surface(ray.origin + planar * ray.direction, normal, normalize(ray.direction), chord, hasNormal, 0u);
-}
 
 // From a pixel of planar distance `front` along an axis of the image to its neighbor that is nearer in depth: the other one may
 // lie across an edge. `step`: Camera::rayX or rayY; `direction`: of the pixel's ray; `beside`: distances of the neighbors

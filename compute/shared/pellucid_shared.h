@@ -15,14 +15,15 @@
 #define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
 #define PELLUCID_BLOCK_GROUP 16   // side of the groups that do one block each
-#define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of the second of the two levels that a group makes
+#define PELLUCID_DOWNSAMPLE_COLUMNS 8 // texels of level 3 that a group makes
 #define PELLUCID_DOWNSAMPLE_ROWS 4
+#define PELLUCID_COARSE_COLUMNS 2 // texels of level 7
+#define PELLUCID_COARSE_ROWS 1
 #define PELLUCID_DIFFUSE_COLUMNS 32 // pixels that a group diffuses
 #define PELLUCID_DIFFUSE_ROWS 16
 #define PELLUCID_ENTRY_POINTS_GROUP 16
 #define PELLUCID_PROBES_GROUP 8   // cells of the gather
 #define PELLUCID_FILTER_GROUP 16  // cells of the gather
-#define PELLUCID_LIST_GROUP 256   // invocations of the pass that lists blocks, in a row
 
 // Bindings of set 0: number, name in the shaders' sources, type. A number is one binding in all passes, each of which declares
 // those that it reads or writes (module/src/passes.cpp).
@@ -43,7 +44,7 @@
   X(PELLUCID_BINDING_HELD, 13, heldImage, kSampled) /* the output's content before the frame */ \
   X(PELLUCID_BINDING_HISTORY, 14, historyImage, kSampled) \
   X(PELLUCID_BINDING_PYRAMID, 15, pyramidImage, kSampled) /* the level or levels that are read */ \
-  X(PELLUCID_BINDING_COARSER_LEVELS, 16, coarserLevelsImage, kSampled) /* of upsampling: levels 4 and 5 */ \
+  X(PELLUCID_BINDING_COARSER_LEVELS, 16, coarserLevelsImage, kSampled) /* of upsampling: levels 4 to 7 */ \
   X(PELLUCID_BINDING_ENTRY_POINTS, 17, entriesImage, kSampled) \
   X(PELLUCID_BINDING_FOUND_PROBES, 18, foundImage, kSampled) \
   X(PELLUCID_BINDING_FILTERED_PROBES, 19, filteredProbesImage, kSampled) \
@@ -170,8 +171,9 @@ struct FrameConstants {
   ivec4 level[PELLUCID_LAST_LEVEL + 1]; // xy: where texel (0, 0) of the level lies in its image; of level 0, that
                                         // of the resolved level 2, zw: of its shares
   uvec4 blocks; // x, y: columns and rows that the rect and PELLUCID_BLOCK_BORDER pixels around it touch; z: first word of their lists; w: 1: groups go by lists
-  // View ray of planar length 1: of pixel (0, 0), changes per pixel in x and y.
-  vec4 facingRay[2]; // along pixels' columns and rows; xy, zw, xy
+  // View ray of planar length 1 along pixels' columns and rows: of pixel (0, 0), changes per pixel in x (xy, zw) and y (xy).
+  vec4 facingRay[2];
+  vec4 axes; // unit directions of pixels' columns (xy) and rows (zw), view space
   mat4 ambient[3];   // per channel: the form whose value at a normal, 1 is the ambient light's irradiance
   uvec4 lightTables[PELLUCID_LIGHT_TABLES * PELLUCID_LIGHT_ENTRIES / 8]; // entries as halves, the first in the low bits
 };
@@ -233,17 +235,25 @@ struct KernelConstants {
 #define PELLUCID_LIST_DIFFUSE 2u    // blocks with material
 #define PELLUCID_LIST_PROBES 3u     // the same ones
 #define PELLUCID_LIST_FILTER 4u     // the same ones
-#define PELLUCID_LIST_COARSE 5u     // levels 4 and 5: all groups, if there is material
-#define PELLUCID_LIST_COARSEST 6u   // levels 6 and 7: the same
-#define PELLUCID_LIST_ENTRIES 7u    // groups of entry points within reach of what blocks show
-#define PELLUCID_LISTS 8
-#define PELLUCID_BLOCK_WORDS 5    // see compute/frame/blocks.glsl
+#define PELLUCID_LIST_COARSE 5u     // levels 4 to 7: all groups, if there is material
+#define PELLUCID_LIST_ENTRIES 6u    // groups of entry points within reach of what blocks show
+#define PELLUCID_LISTS 7
+#define PELLUCID_BLOCK_WORDS 3    // see compute/frame/blocks.glsl
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
 #define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
 
-// Buffer of the passes that find and list blocks. Bits of listed groups of entry points follow.
+// Blocks of an image that goes by lists, at most. Counters of two blocks have a word, see compute/diffusion/list_blocks.glsl.
+#define PELLUCID_LISTED_BLOCKS 16384
+
+struct ListCommand {
+  uvec4 groups; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
+  uvec4 ran;    // x: groups of the last run
+};
+
+// Buffer of the passes that find and list blocks. Blocks' counters and bits of listed groups of entry points follow. Before and after
+// a frame all counts and bits are 0, but those of `ran`.
 struct BlockLists {
-  uvec4 commands[PELLUCID_LISTS]; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
+  ListCommand commands[PELLUCID_LISTS];
   uvec4 maps; // x: shadow maps that are gathered from
   vec4 reach; // x: how far from a surface probes look for entry points, scene units
 };
@@ -252,11 +262,10 @@ struct BlockLists {
 // translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
 // add history: unused, unused, 1 if this is the last dispatch
 // base level: 1 to copy the pixels
-// downsample: finer level, columns of groups
+// coarse levels: columns of groups, coarsest level
 // upsample: coarsest level
 // diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
-// entry points: unused, columns and, from bit 16 on, rows of entry points
-// probes: pixels a side of a cell, lights, columns and rows of entry points and, in bit 31, 1 to add to what is there, samples
+// probes: pixels a side of a cell, lights, 1 to add to what is there, samples
 // filter probes: pixels a side of a cell
 struct PassConstants {
   uvec4 value;

@@ -16,9 +16,7 @@ Surface surfaceAt(ivec2 at, float front, float stored, uint material) {
   float along = -1.0;
   if (hasFlag(PELLUCID_FLAG_CHORD) && hasFlag(PELLUCID_FLAG_BACK_DEPTH))
     along = chordOf(ray, front, stored, texelFetch(backDepthImage, at, 0).x);
-  Surface s = makeSurface(ray, front, along, facetAt(at, material, false));
-  s.material = material;
-  return s;
+  return surfaceOf(at, ray, front, along, material);
 }
 
 // Irradiance and the light that comes through, or what a debug view shows; alpha of the source. `value`: of the material image;

@@ -138,8 +138,6 @@ struct LightTexels {
 
 const float kEverywhere = 3.0e38;
 
-float receiverCosine(Surface s, Incident incident) { return s.hasNormal ? dot(s.normal, incident.toLight) : 0.0; }
-
 // `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight.
 LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, uint material, vec3 x, float cosine,
                         float farthest) {
@@ -187,6 +185,14 @@ vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
   [[dont_unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
   return normalOfDepths(frame.camera, inLattice(pixel), distanceOf(pixel, material, back), beside);
+}
+
+// The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: along the view ray,
+// -1: unknown; `material`: index + 1.
+Surface surfaceOf(ivec2 pixel, ViewRay ray, float planar, float chord, uint material) {
+  vec3 view = normalize(ray.direction), normal = facetAt(pixel, material, false);
+  if (normal == vec3(0.0)) normal = -view;
+  return Surface(ray.origin + planar * ray.direction, normal, view, chord, material);
 }
 
 // Beyond this cosine a face that turns away from the light is not the one that a map stores, whose texels would have to
@@ -264,7 +270,7 @@ uint angleModel() { return mayUse(PELLUCID_SHADER_USE_THESIS) ? frame.flags.w : 
 
 float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
   uint model = angleModel();
-  if (model == PELLUCID_SHADER_ANGLE_NORMAL && s.hasNormal) return max(-dot(s.normal, toLight), 0.0);
+  if (model == PELLUCID_SHADER_ANGLE_NORMAL) return max(-dot(s.normal, toLight), 0.0);
   vec3 view = hasFlag(PELLUCID_FLAG_CONSTANT_VIEW) ? vec3(0.0, 0.0, frame.camera.range.x) : s.view;
   float x = dot(view, toLight) * light.cone.z + light.cone.w; // from the minimum dot on, if the model has one
   if (model == PELLUCID_SHADER_ANGLE_INVERSE_COSINE) return angleInverseCosine(x);
@@ -279,9 +285,6 @@ const float kMostWallTexels = 32.0;
 const float kDiagonal = 1.41421356; // to the farthest of four texels
 // Normals may turn a face to the light that geometry turns away. Its light fades over this cosine.
 const float kTurnedCosine = 0.1;
-
-// Without normals the sheet has those of its depths, which other angle models do not know.
-bool takesDepthsNormal(Surface s) { return angleModel() == PELLUCID_SHADER_ANGLE_NORMAL && !s.hasNormal; }
 
 // Part of the light that no other surface holds back. A texel that stores the sheet itself, what lies behind it, or nothing
 // lets light by. `l`: around the sheet; `facing`: cosine between the sheet's geometry and the light.
@@ -310,11 +313,9 @@ bool isAmbient(LightConstants light) {
   return mayUse(PELLUCID_SHADER_USE_AMBIENT) && light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
 }
 
-vec3 frontNormal(Surface s) { return s.hasNormal ? s.normal : -s.view; }
-
 // Most bodies are thick, whatever their back.
 bool passesAmbient(Surface s) {
-  float least = 0.5 * s.chord * abs(dot(frontNormal(s), s.view)) * frame.camera.range.w;
+  float least = 0.5 * s.chord * abs(dot(s.normal, s.view)) * frame.camera.range.w;
   return s.chord >= 0.0 && least <= materials[s.material - 1u].transmittance4.w;
 }
 
@@ -332,7 +333,7 @@ float chordBeside(Surface s, ivec2 pixel) {
 
 // `facet`: normal of the back depths, towards the eye; 0: not known.
 Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
-  vec3 front = frontNormal(s), back = facet == vec3(0.0) ? -front : -facet;
+  vec3 front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
   float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
   // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
   const float kPerCosine = 3.0;
@@ -346,8 +347,7 @@ Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
 
 // A slab's thickness along its normal, from the chord along the view ray.
 float chordThickness(Surface s) {
-  bool alongNormal = s.hasNormal && !hasFlag(PELLUCID_FLAG_CHORD_THICKNESS);
-  return alongNormal ? s.chord * abs(dot(s.normal, s.view)) : s.chord;
+  return hasFlag(PELLUCID_FLAG_CHORD_THICKNESS) ? s.chord : s.chord * abs(dot(s.normal, s.view));
 }
 
 // docs/integration.md, "Lights and shadow maps", says when each source is used. `pixel`: of the surface.
@@ -355,7 +355,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
   bool holdsExits = light.meta.w != 0u, ambient = isAmbient(light);
   // A sheet's T is the same at any thickness, and its reflectance is its own.
-  if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -frontNormal(s)), 1.0, vec3(0.0));
+  if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -s.normal), 1.0, vec3(0.0));
   if (ambient && !passesAmbient(s)) return kNothingTransmitted;
   // Exit depths do not say where light enters. Then the hidden face lies where the chord ends, and the map says alone which light gets there.
   bool byChord = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
@@ -367,19 +367,20 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   if (byChord) t = Transmitted(chordThickness(s), t.arriving, 1.0, vec3(0.0));
   if (byChord && !mapped && !ambient) return t;
   // Most pixels face some lights, whose maps need no reading.
-  if (t.arriving == vec3(0.0) && !ambient && !(wall && takesDepthsNormal(s))) return t;
+  if (t.arriving == vec3(0.0) && !ambient) return t;
   float farthest = byChord || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
   LightTexels l = LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
-  if (!ambient) l = lightTexels(light, incident, wall ? 0u : s.material, x, byChord ? 0.0 : receiverCosine(s, incident), farthest);
-  // Depths of pixels are read only where they may decide: where a texel may store the receiver itself.
-  vec4 apart = mix(vec4(kEverywhere), byChord ? abs(l.thickness) : l.thickness, greaterThan(l.weight, vec4(0.0)));
-  bool byDepths = ambient || wall || min(min(apart.x, apart.y), min(apart.z, apart.w)) < 2.0 * (kMostTexels * l.side + l.uncertain);
-  vec3 facet = byDepths ? facetAt(pixel, s.material, byChord) : vec3(0.0);
+  if (!ambient) l = lightTexels(light, incident, wall ? 0u : s.material, x, byChord ? 0.0 : dot(s.normal, incident.toLight), farthest);
+  vec3 facet = s.normal;
+  if (byChord) {
+    // Back depths are read only where they may decide: where a texel may store the hidden face.
+    vec4 apart = mix(vec4(kEverywhere), abs(l.thickness), greaterThan(l.weight, vec4(0.0)));
+    bool near = min(min(apart.x, apart.y), min(apart.z, apart.w)) < 2.0 * (kMostTexels * l.side + l.uncertain);
+    facet = ambient || near ? facetAt(pixel, s.material, true) : vec3(0.0);
+  }
   if (ambient) return ambientTransmission(s, pixel, facet);
   float facing = dot(facet, incident.toLight);
   if (wall) {
-    if (facet == vec3(0.0)) facing = receiverCosine(s, incident);
-    else if (takesDepthsNormal(s)) t.arriving = incident.irradiance * max(-facing, 0.0);
     t.thickness = 0.0;
     t.visible = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0) * unblockedPart(light, l, facing);
   } else if (byChord) {

@@ -36,7 +36,7 @@ ConstantsLayout::ConstantsLayout(const Setup& setup, const Lights& all, const St
     place(&entryMaps, last.entryMapBytes + kEntryMapWindow);
   }
   if (stages.diffusion)
-    place(&lists, sizeof(shared::BlockLists) + blocks.maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+    place(&lists, sizeof(shared::BlockLists) + blocks.listWords() * sizeof(uint32_t));
 }
 
 namespace {
@@ -55,7 +55,7 @@ VkDeviceSize mostConstants(VkDeviceSize materials, VkDeviceSize lights, VkDevice
          grouped(maps * sizeof(shared::ShadowConstants), kShadowWindow) +
          grouped(maps * sizeof(shared::GatherMapConstants), kGatherMapWindow) +
          grouped(maps * sizeof(shared::EntryMapConstants), kEntryMapWindow) +
-         aligned(sizeof(shared::BlockLists) + maps * PELLUCID_ENTRY_GROUP_WORDS * sizeof(uint32_t));
+         aligned(sizeof(shared::BlockLists) + listWords(PELLUCID_LISTED_BLOCKS, maps) * sizeof(uint32_t));
 }
 
 // ---- Bytes
@@ -127,6 +127,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   };
   c.facingRay[0] = {facing(camera.rayBase), facing(camera.rayX)};
   c.facingRay[1] = {facing(camera.rayY), 0, 0};
+  c.axes = {column, row};
   const std::array<glm::mat4, 3> ambient = ambientIrradiance(facts);
   std::copy(ambient.begin(), ambient.end(), c.ambient);
   const Rect& r = facts.rect;
@@ -166,7 +167,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   c.filterAndLimit = rgb(t.transmittanceFilter, t.maximumThickness > 0 ? t.maximumThickness : INFINITY);
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     const PyramidPlace& place = facts.pyramid.levels[level];
-    c.level[level] = {place.x - place.rect.x, place.y - place.rect.y, 0, 0};
+    c.level[level] = {place.column - place.rect.x, -place.rect.y, 0, 0};
   }
   const PyramidPlace& second = facts.pyramid.levels[2];
   c.level[0] = {-second.rect.x, -second.rect.y, facts.pyramid.sharesColumn - second.rect.x, -second.rect.y};
@@ -344,9 +345,9 @@ shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan, flo
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     if (!d.indirect) continue;
-    const VkDeviceSize list = (d.indirectOffset - f.constants.lists) / sizeof(glm::uvec4);
+    const VkDeviceSize list = (d.indirectOffset - f.constants.lists) / sizeof(shared::ListCommand);
     // A plan of another frame may have them anywhere.
-    if (list < PELLUCID_LISTS) c.commands[list] = {0, d.groups[1], d.groups[2], d.groups[0]};
+    if (list < PELLUCID_LISTS) c.commands[list].groups = {0, d.groups[1], d.groups[2], d.groups[0]};
   }
   return c;
 }
@@ -374,7 +375,10 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
     if (f.gathers && tables.material.thinWalled == 0)
       reach = std::max(reach, gatherReach(tables.gather, f.gatherSamples));
   }
-  if (f.stages.diffusion) put(mapped, layout.lists, blockLists(f, plan, reach));
+  if (f.stages.diffusion) {
+    put(mapped, layout.lists, blockLists(f, plan, reach));
+    std::memset(static_cast<char*>(mapped) + layout.lists + sizeof(shared::BlockLists), 0, f.blocks.listWords() * sizeof(uint32_t));
+  }
   return PELLUCID_OK;
 }
 

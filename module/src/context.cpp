@@ -23,8 +23,7 @@ namespace {
 // Groups have as many invocations, Vulkan promises 128.
 constexpr uint32_t kInvocations = 256;
 static_assert(kInvocations == PELLUCID_BLOCK_GROUP * PELLUCID_BLOCK_GROUP &&
-              kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP &&
-              kInvocations == PELLUCID_LIST_GROUP);
+              kInvocations == PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP);
 // The filter of probes needs the most shared memory of all passes; shaders_command_test checks that none exceeds this.
 constexpr uint32_t kSharedBytes = 16384;
 

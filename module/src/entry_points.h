@@ -24,9 +24,6 @@ constexpr uint32_t entryGroups(uint32_t entries) {
   return parts(entries, PELLUCID_ENTRY_POINTS_GROUP) * PELLUCID_ENTRY_POINTS_GROUP;
 }
 
-// Columns with the coarser levels beside them, of compute/gather/entry_point.glsl.
-constexpr uint32_t withCoarserEntries(uint32_t columns) { return columns + columns / 2; }
-
 struct EntryExtent {
   uint32_t width, height;
   uint32_t side;  // texels of the map that an entry point stands for, a side

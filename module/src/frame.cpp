@@ -10,9 +10,6 @@ namespace {
 
 // ---- Blocks
 
-// The least limit of workgroups along an axis, of all devices.
-constexpr uint32_t kMostGroups = 65535;
-
 // Groups of entry points along a side of a map: a bit for each.
 constexpr uint32_t kEntryGroups = kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP;
 static_assert(kEntryGroups * kEntryGroups <= 32 * PELLUCID_ENTRY_GROUP_WORDS);
@@ -34,8 +31,8 @@ Blocks::Blocks(const Lights& lights, const Rect& rect)
       entryGroups(lights.entryColumns * lights.entryRows /
                   (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP)) {}
 
-uint32_t Blocks::listGroups() const {
-  return parts(count() * (1 + kEntryGroups * maps), PELLUCID_LIST_GROUP);
+uint32_t Blocks::listWords() const {
+  return static_cast<uint32_t>(pellucid::listWords(std::min<uint32_t>(count(), PELLUCID_LISTED_BLOCKS), maps));
 }
 
 // ---- Stages
@@ -62,7 +59,7 @@ Stages::Stages(const Setup& setup, const Lights& all, const Blocks& blocks) {
   history = keepsHistory && !keepsProbes;
   whyNoLists = setup.frame.options.indirectDispatches == 0 ? "frame.options.indirectDispatches asks for none"
                : all.gathered > 1                          ? "lights need several dispatches"
-               : blocks.listGroups() > kMostGroups         ? "the image has more blocks than lists can hold"
+               : blocks.count() > PELLUCID_LISTED_BLOCKS   ? "the image has more blocks than lists can hold"
                                                            : nullptr;
   lists = diffusion && !whyNoLists;
 }

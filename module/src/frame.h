@@ -25,10 +25,14 @@ struct Blocks {
   uint32_t listWord() const { return PELLUCID_BLOCK_WORDS * count(); }
   uint32_t words() const { return listWord() + 2 * count() + entryGroups; }
   static constexpr uint32_t kColumns = 1u << PELLUCID_BLOCK_WORDS_SHIFT;
-  // Groups of the pass that lists blocks: an invocation for each, then for each map, block and row of the
-  // map's groups.
-  uint32_t listGroups() const;
+  // Words behind BlockLists.
+  uint32_t listWords() const;
 };
+
+// Words of the lists' buffer: counters of as many blocks, and bits of the groups of as many maps' entry points.
+constexpr VkDeviceSize listWords(VkDeviceSize blocks, VkDeviceSize maps) {
+  return (blocks + 1) / 2 + maps * PELLUCID_ENTRY_GROUP_WORDS;
+}
 
 // The passes that run.
 struct Stages {

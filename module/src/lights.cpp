@@ -134,8 +134,8 @@ Lights::Lights(const Setup& setup, Findings& out) {
     return map.options.exitImage == 0 && map.options.casterMaterialImage == 0;
   };
   if (std::all_of(frame.shadowMaps, frame.shadowMaps + frame.shadowMapCount, hasNothing)) return;
-  // At most: three dispatches that downsample, base level, upsample, two that diffuse, history.
-  constexpr uint32_t kOthers = 8;
+  // At most: base level, two dispatches that downsample, upsample, two that diffuse, history.
+  constexpr uint32_t kOthers = 7;
   // Debug views of light need all lights in one dispatch.
   const bool binds = setup.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
                          ? count <= 1

@@ -6,12 +6,12 @@
 
 #include "kAddHistory.h"
 #include "kBaseLevel.h"
+#include "kCoarseLevels.h"
 #include "kDiffuse.h"
 #include "kDownsample.h"
 #include "kEntryPoints.h"
 #include "kEntryPointsArray.h"
 #include "kFilterProbes.h"
-#include "kListBlocks.h"
 #include "kProbes.h"
 #include "kTranslucency.h"
 #include "kTranslucencyArray.h"
@@ -94,7 +94,7 @@ constexpr Pass kBaseLevelPass{
     .words = kBaseLevel,
     .uses = kDiffusion,
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
-                      PELLUCID_BINDING_SOURCE),
+                      PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_GATHER_MAPS),
     .writes = bindings(PELLUCID_BINDING_LEVELS, PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS,
                        PELLUCID_BINDING_DESTINATION)};
 
@@ -103,6 +103,7 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
   const bool copies = copy != source;
   Step step = p.add(kBaseLevelPass, "base level");
   step.groups(p.facts.blocks.count())
+      .lights(LightGroup{})
       .image(PELLUCID_BINDING_SOURCE, source)
       .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
       .push(0, copies);
@@ -110,18 +111,6 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
     step.image(PELLUCID_BINDING_DESTINATION, copy);
   else
     step.standIn(PELLUCID_BINDING_DESTINATION, PELLUCID_RESOURCE_OUTPUT);
-}
-
-// ---- Lists of blocks ----------------------------------------------------------------------------------
-
-constexpr Pass kListBlocksPass{.pipeline = "list_blocks",
-                               .words = kListBlocks,
-                               .uses = kDiffusion,
-                               .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_GATHER_MAPS),
-                               .writes = bindings(PELLUCID_BINDING_BLOCKS, PELLUCID_BINDING_LISTS)};
-
-void addListBlocks(Planner& p) {
-  p.add(kListBlocksPass, "list blocks").groups(p.facts.blocks.listGroups()).lights(LightGroup{});
 }
 
 // ---- Downsampling -------------------------------------------------------------------------------------
@@ -133,28 +122,39 @@ constexpr Pass kDownsamplePass{
     .reads = bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_LEVELS)};
 
+// Levels 2 and 3.
+void addDownsample(Planner& p) {
+  constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
+  p.add(kDownsamplePass, "downsample")
+      .blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS)
+      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
+      .image(PELLUCID_BINDING_LEVELS, p.level(2));
+}
+
+constexpr Pass kCoarseLevelsPass{.pipeline = "coarse_levels",
+                                 .words = kCoarseLevels,
+                                 .uses = kDiffusion,
+                                 .reads = kDownsamplePass.reads,
+                                 .writes = kDownsamplePass.writes};
+
 // Groups of `side` texels that [first, first + size) touches. Shifts round down, as the border's texels begin
 // below 0.
 uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   const int shift = std::countr_zero(side);
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
 }
-// Two levels from `finer`.
-void addDownsample(Planner& p, uint32_t finer) {
-  Step step = p.add(kDownsamplePass, "downsample");
-  step.image(PELLUCID_BINDING_PYRAMID, p.level(finer))
-      .image(PELLUCID_BINDING_LEVELS, p.level(finer + 1))
-      .push(0, finer);
-  if (finer == kFirstLevel) {
-    constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
-    step.blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS);
-    return;
-  }
-  const auto& rect = p.facts.pyramid.levels[finer + 2].rect;
-  const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_DOWNSAMPLE_COLUMNS);
-  step.groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_DOWNSAMPLE_ROWS))
-      .push(1, columns)
-      .list(finer == kFirstLevel + 2 ? PELLUCID_LIST_COARSE : PELLUCID_LIST_COARSEST);
+
+// Levels 4 to `coarsest`. Their parts follow level 7, whether or not that is made.
+void addCoarseLevels(Planner& p, uint32_t coarsest) {
+  const auto& rect = p.facts.pyramid.levels[PELLUCID_LAST_LEVEL].rect;
+  const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_COARSE_COLUMNS);
+  p.add(kCoarseLevelsPass, "coarse levels")
+      .groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_COARSE_ROWS))
+      .image(PELLUCID_BINDING_PYRAMID, p.level(3))
+      .image(PELLUCID_BINDING_LEVELS, p.level(4))
+      .push(0, columns)
+      .push(1, coarsest)
+      .list(PELLUCID_LIST_COARSE);
 }
 
 // ---- Upsampling ---------------------------------------------------------------------------------------
@@ -184,7 +184,7 @@ constexpr Pass kDiffusePass{
     .uses = kDiffusion,
     .reads = kColorReads |
              bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
-    .writes = kColorWrites,
+    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS),
     .counted = Counted::Blocks};
 
 // With the light of the probes, if the frame has some.
@@ -209,17 +209,15 @@ constexpr Pass kEntryPointsPass{
     .reads = shadowImages(PELLUCID_ENTRY_IMAGE_COUNT) |
              bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
                       PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
-                      PELLUCID_BINDING_BLOCKS),
+                      PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
-// Columns and, from bit 16 on, rows of a group's entry points.
-uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
 void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).push(1, entriesOf(group));
+  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel));
   if (p.facts.stages.lists)
     step.groups(columns * rows * group.shadowCount).list(PELLUCID_LIST_ENTRIES);
   else
@@ -230,8 +228,8 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
 
 constexpr BindingSet kProbeReads = bindings(
     PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS, PELLUCID_BINDING_MATERIALS,
-    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_MATERIAL,
-    PELLUCID_BINDING_ENTRY_POINTS, PELLUCID_BINDING_BLOCKS);
+    PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_PYRAMID,
+    PELLUCID_BINDING_MATERIAL, PELLUCID_BINDING_ENTRY_POINTS, PELLUCID_BINDING_BLOCKS);
 constexpr BindingSet kProbeWrites = bindings(PELLUCID_BINDING_PROBES_DESTINATION);
 
 constexpr Pass kProbesPass{.pipeline = "probes",
@@ -251,9 +249,10 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
   p.add(kProbesPass, "probes")
       .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
       .lights(group)
+      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
       .push(0, p.facts.gatherSpacing)
       .push(1, group.gathered)
-      .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
+      .push(2, adds)
       .push(3, p.facts.gatherSamples);
 }
 
@@ -284,10 +283,9 @@ void addProbeFilter(Planner& p) {
 
 // ---- All ----------------------------------------------------------------------------------------------
 
-constexpr const Pass* kPasses[] = {&kTranslucencyPass, &kDebugViewPass,  &kAddHistoryPass,  &kBaseLevelPass,
-                                   &kListBlocksPass,   &kDownsamplePass, &kUpsamplePass,    &kDiffusePass,
-                                   &kEntryPointsPass,  &kProbesPass,     &kFilterProbesPass,
-                                   &kAccumulateProbesPass};
+constexpr const Pass* kPasses[] = {
+    &kTranslucencyPass, &kDebugViewPass, &kAddHistoryPass,  &kBaseLevelPass, &kDownsamplePass,   &kCoarseLevelsPass,
+    &kUpsamplePass,     &kDiffusePass,   &kEntryPointsPass, &kProbesPass,    &kFilterProbesPass, &kAccumulateProbesPass};
 constexpr bool fitSlots() {
   for (const Pass* pass : kPasses)
     if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;
@@ -358,10 +356,10 @@ private:
       pixels([&](uint32_t from, uint32_t to) { addBaseLevel(p_, from, to); });
     else
       addBaseLevel(p_, source_, source_);
-    if (stages_.lists) addListBlocks(p_);
-    for (uint32_t finer = kFirstLevel; finer < p_.facts.coarsestLevel; finer += 2) addDownsample(p_, finer);
-    addUpsample(p_, p_.facts.coarsestLevel);
+    addDownsample(p_);
+    if (p_.facts.coarsestLevel > 3) addCoarseLevels(p_, p_.facts.coarsestLevel);
     gather();
+    addUpsample(p_, p_.facts.coarsestLevel);
     pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
   }
 

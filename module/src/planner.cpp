@@ -88,7 +88,7 @@ Step& Step::list(uint32_t which) {
   if (!planner_.facts.stages.lists) return *this;
   d_.indirect = 1;
   d_.indirectOffset = static_cast<uint32_t>(
-      planner_.facts.constants.lists + offsetof(shared::BlockLists, commands) + which * sizeof(glm::uvec4));
+      planner_.facts.constants.lists + offsetof(shared::BlockLists, commands) + which * sizeof(shared::ListCommand));
   return *this;
 }
 
@@ -167,14 +167,15 @@ bool Planner::finish() {
   const uint32_t count = plan_.dispatchCount;
   std::array<Access, PELLUCID_MAX_DISPATCHES> access;
   std::array<uint32_t, PELLUCID_MAX_DISPATCHES> wave{};
-  // Wave that the commands of later dispatches are read in first.
+  // Wave that the commands of later dispatches are read in first. The first dispatch that writes lists makes them, the last one empties
+  // them.
   uint32_t commands = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const PellucidDispatch& d = plan_.dispatches[i];
     access[i] = accessOf(*allPasses()[d.pipeline], d, standIns_[i]);
     for (uint32_t k = 0; k < i; ++k)
       if (access[i].conflicts(access[k])) wave[i] = std::max(wave[i], wave[k] + 1);
-    if ((access[i].writes & 1u << PELLUCID_RESOURCE_CONSTANTS) != 0) commands = wave[i] + 1;
+    if (commands == 0 && (access[i].writes & 1u << PELLUCID_RESOURCE_CONSTANTS) != 0) commands = wave[i] + 1;
   }
   // Stable, so that the dispatches of a wave keep the order of the data flow.
   for (uint32_t i = 1; i < count; ++i)

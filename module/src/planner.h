@@ -54,7 +54,7 @@ public:
 
   // Image of a level of the pyramid. The first holds level 2 after upsampling, too.
   uint32_t level(uint32_t level) const {
-    return kTransient0 + facts.stages.colorTransients() + (level < 6 ? level / 2 : 1);
+    return kTransient0 + facts.stages.colorTransients() + imageOfLevel(level);
   }
   // Images of the gather's probes; of the entry points of the maps and, in their place, the filtered probes.
   uint32_t probes() const {

@@ -8,9 +8,6 @@ namespace {
 // Texels of a level under `pixels` in a row from 0 on, and one more on each side.
 uint32_t most(uint32_t pixels, uint32_t level) { return ((pixels - 1) >> level) + 3; }
 
-// Columns that level 1 takes, and in its place level 2 after upsampling beside its shares.
-uint32_t firstColumns(uint32_t pixels) { return std::max(most(pixels, kFirstLevel), 2 * most(pixels, 2)); }
-
 }  // namespace
 
 Pyramid::Pyramid(glm::uvec2 extent, const Rect& r) : coarsest(kFirstLevel + 2) {
@@ -18,11 +15,10 @@ Pyramid::Pyramid(glm::uvec2 extent, const Rect& r) : coarsest(kFirstLevel + 2) {
     coarsest += 2;
   for (uint32_t level = kFirstLevel; level <= PELLUCID_LAST_LEVEL; ++level) {
     PyramidPlace& place = levels[level];
-    // The second level of an image lies beside the first.
-    if (level > kFirstLevel && level % 2 != 0)
-      place.x = static_cast<int32_t>(most(extent.x, level - 1));
-    // The two coarsest levels lie below levels 2 and 3.
-    if (level > 5) place.y = static_cast<int32_t>(most(extent.y, 2));
+    Extent& image = images[imageOfLevel(level)];
+    place.column = static_cast<int32_t>(image.width);
+    image.width += most(extent.x, level);
+    image.height = std::max(image.height, most(extent.y, level));
     const int32_t border = level > kFirstLevel ? 1 : 0;
     const auto first = [&](uint32_t pixel) { return static_cast<int32_t>(pixel >> level) - border; };
     const auto end = [&](uint32_t pixels) {
@@ -30,11 +26,9 @@ Pyramid::Pyramid(glm::uvec2 extent, const Rect& r) : coarsest(kFirstLevel + 2) {
     };
     place.rect = {first(r.x), first(r.y), end(r.x + r.width) - first(r.x), end(r.y + r.height) - first(r.y)};
   }
+  // In place of level 1, level 2 after upsampling lies beside its shares.
   sharesColumn = levels[2].rect.width;
-  images[0] = {firstColumns(extent.x), most(extent.y, kFirstLevel)};
-  for (uint32_t i = 1; i < kPyramidImages; ++i)
-    images[i] = {most(extent.x, 2 * i) + most(extent.x, 2 * i + 1), most(extent.y, 2 * i)};
-  images[1].height += most(extent.y, 6);
+  images[0].width = std::max(images[0].width, 2 * most(extent.x, 2));
 }
 
 }  // namespace pellucid

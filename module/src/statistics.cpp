@@ -26,13 +26,14 @@ PellucidGroups groupsOf(const PellucidPlan& plan, uint32_t index, const Pellucid
   const PellucidDispatch& d = plan.dispatches[index];
   const uint64_t most = uint64_t{d.groups[0]} * d.groups[1] * d.groups[2];
   if (!d.indirect) return {most, most};
-  VkDispatchIndirectCommand ran;
-  if (d.indirectOffset > plan.constantsSize || plan.constantsSize - d.indirectOffset < sizeof ran) {
+  shared::ListCommand command;
+  if (d.indirectOffset > plan.constantsSize || plan.constantsSize - d.indirectOffset < sizeof command) {
     out.error(Field("plan.dispatches[", index, "].indirectOffset"), "is ", d.indirectOffset,
               ", beyond the plan's ", plan.constantsSize, " bytes of constants");
     return {};
   }
-  std::memcpy(&ran, static_cast<const char*>(slice.mapped) + d.indirectOffset, sizeof ran);
+  std::memcpy(&command, static_cast<const char*>(slice.mapped) + d.indirectOffset, sizeof command);
+  const glm::uvec3 ran(command.ran.x, command.groups.y, command.groups.z);
   if (ran.x > d.groups[0] || ran.y > d.groups[1] || ran.z > d.groups[2])
     out.error("constants.mapped", "has ", ran.x, " x ", ran.y, " x ", ran.z, " groups of \"", d.name,
               "\", which are at most ", d.groups[0], " x ", d.groups[1], " x ", d.groups[2],

@@ -101,8 +101,8 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
       found[run.plan().dispatches[i].name] = statistics.dispatches[i];
     return found;
   };
-  constexpr const char* kListed[] = {"downsample",   "upsample", "diffuse",
-                                     "entry points", "probes",   "filter probes"};
+  constexpr const char* kListed[] = {"downsample",   "coarse levels", "upsample",     "diffuse",
+                                     "entry points", "probes",        "filter probes"};
   c.material.assign(c.material.size(), 0);
   auto found = groups();
   for (const char* name : kListed) EXPECT_EQ(found.at(name).run, 0u) << name << " of nothing";

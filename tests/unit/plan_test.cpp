@@ -63,7 +63,7 @@ void addImagesBeside(Frame& f) {
 // ---- Which passes a frame has, and what it skips
 
 TEST(Plan, PassesAndSkipsFollowTheFrame) {
-  const Names pyramid = {"base level", "downsample", "downsample", "downsample", "upsample", "diffuse"};
+  const Names pyramid = {"base level", "downsample", "coarse levels", "upsample", "diffuse"};
   Names whole = pyramid;
   whole.insert(whole.begin(), "translucency");
   struct Row {
@@ -137,8 +137,8 @@ TEST(Plan, IrradianceThatIsTheOutputIsLeftAlone) {
 
 // The default frame, as docs/how-it-works.md lists it.
 TEST(Plan, GathersBesideTheDiffusion) {
-  const Names all = {"base level", "list blocks", "downsample",    "entry points", "downsample",
-                     "probes",     "downsample",  "filter probes", "upsample",     "diffuse"};
+  const Names all = {"base level", "list blocks", "downsample",    "entry points", "coarse levels",
+                     "probes",     "upsample",    "filter probes", "diffuse"};
   for (const auto indirect : {1, 0}) {
     Gathered f;
     f.frame.options.indirectDispatches = indirect;
@@ -147,15 +147,16 @@ TEST(Plan, GathersBesideTheDiffusion) {
     if (indirect == 0) expected.erase(expected.begin() + 1);
     EXPECT_EQ(std::multiset<std::string>(found.begin(), found.end()),
               std::multiset<std::string>(expected.begin(), expected.end()));
-    EXPECT_EQ(plan.barrierCount, indirect == 0 ? 5u : 6u);
+    EXPECT_EQ(plan.barrierCount, indirect == 0 ? 4u : 5u);
     // Steps between barriers: which passes run side by side.
     std::map<std::string, std::set<uint32_t>> steps;
     uint32_t step = 0;
     for (uint32_t i = 0; i < plan.dispatchCount; ++i)
       steps[found[i]].insert(step += plan.dispatches[i].barrierBefore);
-    ASSERT_EQ(steps["downsample"].size(), 3u);
-    for (const char* pass : {"entry points", "probes", "filter probes"})
-      EXPECT_EQ(steps["downsample"].count(*steps[pass].begin()), 1u) << pass;
+    for (const auto& [pass, beside] : {std::pair("entry points", "downsample"),
+                                       {"probes", "coarse levels"},
+                                       {"filter probes", "upsample"}})
+      EXPECT_EQ(steps[pass], steps[beside]) << pass;
   }
 }
 
@@ -497,8 +498,9 @@ TEST(Plan, SmallRadiiDropLevelsAndNoImages) {
   // 23.6, 21.4, 5.9, 5.4, .07 pixels
   for (const Row& row : {Row{3, 7}, {3.3f, 5}, {12, 5}, {13, 3}, {1000, 3}}) {
     f.frame.options.nearestDistance = row.distance;
-    // Two levels each, from level 1 on.
-    EXPECT_EQ(countOf(f.plan(), "downsample"), (row.coarsest - 1) / 2) << row.distance;
+    const PellucidPlan plan = f.plan();
+    const PellucidDispatch* coarse = find(plan, "coarse levels");
+    EXPECT_EQ(coarse ? coarse->pushConstants[1] : 3, row.coarsest) << row.distance;
     EXPECT_EQ(coarsest(), row.coarsest) << row.distance;
   }
   f.frame.options.nearestDistance = 13;

@@ -25,7 +25,7 @@ void expectApart(uint32_t width, uint32_t height, Rect rect) {
   const Pyramid pyramid({width, height}, rect);
   const auto box = [&](uint32_t level) {
     const PyramidPlace& p = pyramid.levels[level];
-    return Box{p.x, p.y, p.rect.width, p.rect.height};
+    return Box{p.column, 0, p.rect.width, p.rect.height};
   };
   const auto inside = [&](const Box& b, uint32_t image) {
     const Pyramid::Extent& size = pyramid.images[image];
@@ -37,9 +37,12 @@ void expectApart(uint32_t width, uint32_t height, Rect rect) {
             shares{pyramid.sharesColumn, 0, second.width, second.height};
   EXPECT_TRUE(apart(upsampled, shares));
   EXPECT_TRUE(inside(upsampled, 0) && inside(shares, 0) && inside(box(1), 0));
-  for (uint32_t level = 2; level <= 5; ++level) EXPECT_TRUE(inside(box(level), level / 2)) << level;
-  EXPECT_TRUE(apart(box(2), box(3)));
-  EXPECT_TRUE(apart(box(4), box(5)));
+  for (uint32_t level = 2; level <= PELLUCID_LAST_LEVEL; ++level) {
+    EXPECT_TRUE(inside(box(level), imageOfLevel(level))) << level;
+    for (uint32_t finer = 2; finer < level; ++finer)
+      EXPECT_TRUE(imageOfLevel(finer) != imageOfLevel(level) || apart(box(finer), box(level)))
+          << finer << ", " << level;
+  }
 }
 
 TEST(Pyramid, LevelsLieApart) {

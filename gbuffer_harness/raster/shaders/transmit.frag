@@ -55,8 +55,7 @@ void main() {
   if (material == 0u || material > frame.flags.y) discard;
 
   float through = chord(planarDifference(frame.camera, gl_FragCoord.z, front), ray);
-  Surface s = makeSurface(ray, planarDistance(frame.camera, front), through, facetAt(pixel, material, false));
-  s.material = material;
+  Surface s = surfaceOf(pixel, ray, planarDistance(frame.camera, front), through, material);
   vec3 sum = vec3(0.0);
   for (uint i = 0u; i < draw.ids.w; ++i)
     sum += exitanceOf(lightTransmission(lights[i], s, pixel), material - 1u);

@@ -1,17 +1,47 @@
-// Lists the blocks that later passes do, and the groups of entry points within reach of the surfaces that blocks show: an
-// invocation looks at a block, or for one block at a row of the groups of a map.
-#version 460
-#extension GL_GOOGLE_include_directive : require
+// Lists the blocks that later passes do, and the groups of entry points within reach of the surfaces that blocks show.
+#ifndef PELLUCID_LIST_BLOCKS_GLSL
+#define PELLUCID_LIST_BLOCKS_GLSL
 
-#define GROUP_SIDE PELLUCID_LIST_GROUP
-#define GROUP_ROWS 1
-#include "frame/blocks.glsl"
+#include "frame/lists.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps { GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS]; };
-layout(set = 0, binding = PELLUCID_BINDING_LISTS) buffer Lists {
-  BlockLists lists;
-  uint entryGroups[]; // a bit for each group of a map's entry points that is listed
-};
+
+// ---- Blocks. Each adds to the counters of the blocks around. The last one to do so knows all that a list says of a block
+
+// Counts in a block's half of a word, 4 bits each: blocks around, itself among them, that were looked at, that hold material, and all
+// of whose cells do. Another bit: the block itself holds material.
+const uint kLooked = 1u, kHolds = 0x10u, kFull = 0x100u, kOwnHolds = 0x1000u;
+const uint kCounts = 15u, kHalf = 0xFFFFu;
+
+void listBlock(uint block, uint counts) {
+  bool near = (counts & kCounts * kHolds) != 0u;
+  writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
+  if (!near) return;
+  uint word = (counts & kCounts * kFull) == 9u * kFull ? block | kWholeBlock : block;
+  writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].groups.x, 1u), word);
+  atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].groups.x, 1u);
+  if ((counts & kOwnHolds) == 0u) return;
+  writeWord(materialList() + atomicAdd(lists.commands[PELLUCID_LIST_DIFFUSE].groups.x, 1u), word);
+  atomicAdd(lists.commands[PELLUCID_LIST_PROBES].groups.x, 1u);
+  atomicAdd(lists.commands[PELLUCID_LIST_FILTER].groups.x, 1u);
+  atomicMax(lists.commands[PELLUCID_LIST_COARSE].groups.x, lists.commands[PELLUCID_LIST_COARSE].groups.w);
+}
+
+// Counts a block at the i-th of the 3 x 3 blocks around it. `cells`: its words of cells with material.
+void countBlock(uint block, int i, uvec2 cells) {
+  ivec2 blocks = ivec2(frame.blocks.xy), at = ivec2(block % frame.blocks.x, block / frame.blocks.x) + ivec2(i % 3, i / 3) - 1;
+  if (!contains(ivec4(0, 0, blocks), at)) return;
+  bool holds = cells != uvec2(0u);
+  uint other = uint(at.y) * frame.blocks.x + uint(at.x), shift = 16u * (other & 1u);
+  uint added = kLooked + (holds ? kHolds : 0u) + (cells == uvec2(~0u) ? kFull : 0u) + (holds && other == block ? kOwnHolds : 0u);
+  uint counts = (atomicAdd(listWords[other >> 1], added << shift) >> shift & kHalf) + added;
+  ivec2 around = min(at + 2, blocks) - max(at - 1, ivec2(0));
+  if ((counts & kCounts) != uint(around.x * around.y)) return;
+  atomicAnd(listWords[other >> 1], ~(kHalf << shift));
+  listBlock(other, counts);
+}
+
+// ---- Groups of entry points
 
 const uint kEntryGroupRowWords = 2u, kEntryGroupRows = 64u; // a row has 64 groups
 const uint kEntryGroupWords = uint(PELLUCID_ENTRY_GROUP_WORDS);
@@ -55,10 +85,7 @@ uint bitsWithin(int first, int last, int begin) {
 }
 
 // Lists the groups in a row of a map that a block needs and that no other has listed.
-void listEntryGroups(uint map, uint block, int row) {
-  float nearest = uintBitsToFloat(readWord(blockWord(block, kNearestWord)));
-  float farthest = uintBitsToFloat(readWord(blockWord(block, kFarthestWord)));
-  if (!(farthest > 0.0)) return;
+void listEntryGroups(uint map, uint block, int row, float nearest, float farthest) {
   vec4 entries = entriesInReach(map, block, nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
@@ -69,53 +96,15 @@ void listEntryGroups(uint map, uint block, int row) {
   if (row < groups.y || row > groups.w) return;
   for (uint i = 0u; i < kEntryGroupRowWords; ++i) {
     uint bits = bitsWithin(groups.x, groups.z, 32 * int(i));
-    uint at = map * kEntryGroupWords + kEntryGroupRowWords * uint(row) + i;
+    uint at = counterWords() + map * kEntryGroupWords + kEntryGroupRowWords * uint(row) + i;
     // Read first: neighboring blocks need mostly the same.
-    uint added = bits & ~entryGroups[at];
-    if (added != 0u) added &= ~atomicOr(entryGroups[at], added);
+    uint added = bits & ~listWords[at];
+    if (added != 0u) added &= ~atomicOr(listWords[at], added);
     if (added == 0u) continue;
-    uint place = entryList() + atomicAdd(lists.commands[PELLUCID_LIST_ENTRIES].x, bitCount(added));
+    uint place = entryList() + atomicAdd(lists.commands[PELLUCID_LIST_ENTRIES].groups.x, bitCount(added));
     for (; added != 0u; added &= added - 1u, ++place)
       writeWord(place, packEntryGroup(uvec3(32u * i + uint(findLSB(added)), uint(row), map)));
   }
 }
 
-uvec2 cellsOfBlock(ivec2 at) {
-  if (!contains(ivec4(0, 0, frame.blocks.xy), at)) return uvec2(0u);
-  uint block = uint(at.y) * frame.blocks.x + uint(at.x);
-  return uvec2(readWord(blockWord(block, kCellWord)), readWord(blockWord(block, kCellWord + 1u)));
-}
-
-void listBlock(uint block) {
-  ivec2 at = ivec2(block % frame.blocks.x, block / frame.blocks.x);
-  uvec2 some = uvec2(0u), all = uvec2(~0u);
-  for (int i = 0; i < 9; ++i) { // no early exit: it would wait for each word
-    uvec2 cells = cellsOfBlock(at + ivec2(i % 3, i / 3) - 1);
-    some |= cells;
-    all &= cells;
-  }
-  bool near = some != uvec2(0u);
-  writeWord(blockWord(block, kNearWord), near ? 1u : 0u);
-  if (!near) return;
-  bool holds = cellsOfBlock(at) != uvec2(0u);
-  if (all == uvec2(~0u)) block |= kWholeBlock;
-  writeWord(nearList() + atomicAdd(lists.commands[PELLUCID_LIST_DOWNSAMPLE].x, 1u), block);
-  atomicAdd(lists.commands[PELLUCID_LIST_UPSAMPLE].x, 1u);
-  if (!holds) return;
-  uint place = atomicAdd(lists.commands[PELLUCID_LIST_DIFFUSE].x, 1u);
-  writeWord(materialList() + place, block);
-  atomicAdd(lists.commands[PELLUCID_LIST_PROBES].x, 1u);
-  atomicAdd(lists.commands[PELLUCID_LIST_FILTER].x, 1u);
-  atomicMax(lists.commands[PELLUCID_LIST_COARSE].x, lists.commands[PELLUCID_LIST_COARSE].w);
-  atomicMax(lists.commands[PELLUCID_LIST_COARSEST].x, lists.commands[PELLUCID_LIST_COARSEST].w);
-}
-
-void main() {
-  uint index = gl_GlobalInvocationID.x, blocks = blockCount();
-  if (index < blocks) {
-    listBlock(index);
-  } else if (index < blocks * (1u + kEntryGroupRows * lists.maps.x)) {
-    uint row = (index - blocks) % kEntryGroupRows, rest = (index - blocks) / kEntryGroupRows;
-    listEntryGroups(rest / blocks, rest % blocks, int(row));
-  }
-}
+#endif
