@@ -14,9 +14,8 @@ namespace pellucid::harness::reference {
 // View space, scene units.
 struct Surface {
   glm::dvec3 position;
-  glm::dvec3 ray;  // unit, from the eye to the position
-  glm::dvec3
-      normal;  // unit, towards the eye, of the pixel's quad; against the ray where depths span no plane
+  glm::dvec3 ray;     // unit, from the eye to the position
+  glm::dvec3 normal;  // unit, towards the eye, of the pixel's quad; against the ray if depths have no plane
   glm::dvec3 middle;  // of the quad, where its surface has that normal
   glm::ivec2 pixel;
   std::optional<double> chord;  // length of the ray between the front and back surface, > 0
