@@ -106,26 +106,11 @@ float nearerStep(int place, int stride, uint material, float own, float center) 
   return best;
 }
 
-// Of a surface that ends at a silhouette. Depth goes there like the root of the distance to it: the slope at the last quad, half its
-// side from the silhouette, is the root of 2 times that to the quad before, and its mean over the quad the root of 2 times more.
-const float kLimb = 1.41421356;
-
-// kLimb where the surface ends in the quad or in the direction in which its depth grows, and what lies there is not nearer.
-float limbOf(int place, int stride, float own, float perTexel, float reach) {
-  bool ends = (surfaceAt(place) & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
-  return ends ? kLimb : 1.0;
-}
-
-// The texel of a quad with a surface.
-uvec4 texelOf(ivec2 first, ivec2 quad) {
-  int place = placeOf(quad);
-  float own = depths[place];
-  uint material = materialOf(surfaceAt(place)), pixels = pixelsOf(surfaceAt(place));
-  vec2 center = centerOf(pixels), size = texelSize(own, 1u), ray = facingRayAt(pixelOf(1u, first + quad));
+// Change of depth per texel. `center`: of the quad's pixels; `size`: of a texel at depth `own`.
+vec2 slopeOfQuads(int place, uint material, float own, vec2 center, vec2 size, vec2 ray) {
   vec2 perTexel = vec2(nearerStep(place, 1, material, own, center.x), nearerStep(place, kRow, material, own, center.y));
-  vec2 perSize = 1.0 / max(size, vec2(1.0e-30));
   // A surface is another where it is a texel's side off along the ray.
-  float perSquare = inverseSpread(perTexel * perSize, ray, size) * (1.0 + dot(ray, ray));
+  float perSquare = inverseSpread(perTexel / max(size, vec2(1.0e-30)), ray, size) * (1.0 + dot(ray, ray));
   vec2 tilt = vec2(0.0), spread = vec2(0.0);
   // Not unrolled, here and below: small frames wait for code.
   [[dont_unroll]] for (int i = 0; i < 9; ++i) { // the quad itself adds nothing
@@ -138,9 +123,55 @@ uvec4 texelOf(ivec2 first, ivec2 quad) {
     tilt += w * off * step;
     spread += w * step * step;
   }
-  perTexel += tilt / max(spread, vec2(1.0e-3));
-  float reach = 2.0 * kSteepest * min(size.x, size.y);
-  vec2 limb = vec2(limbOf(place, 1, own, perTexel.x, reach), limbOf(place, kRow, own, perTexel.y, reach));
+  return perTexel + tilt / max(spread, vec2(1.0e-3));
+}
+
+// Part of a texel's side that a plane's depths may be off: weights are then within 1 % of 1.
+const float kNearPlane = 0.1;
+
+// Of a surface that ends at a silhouette. Depth goes there like the root of the distance to it: the slope at the last quad, half its
+// side from the silhouette, is the root of 2 times that to the quad before, and its mean over the quad the root of 2 times more.
+const float kLimb = 1.41421356;
+
+// kLimb where the surface ends in the quad or in the direction in which its depth grows, and what lies there is not nearer.
+float limbOf(int place, int stride, float own, float perTexel, float reach) {
+  bool ends = (surfaceAt(place) & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
+  return ends ? kLimb : 1.0;
+}
+
+// Change of depth per texel where all quads around are full and lie on one plane, whose weights are all 1: the means of both sides'
+// differences. False where they do not.
+bool slopeOfPlane(int place, float nearPlane, out vec2 perTexel) {
+  uint own = surfaceAt(place), different = 0u;
+  vec3 rows[3];
+  [[unroll]] for (int y = 0; y < 3; ++y)
+    [[unroll]] for (int x = 0; x < 3; ++x) {
+      int at = place + (y - 1) * kRow + x - 1;
+      rows[y][x] = depths[at];
+      different |= surfaceAt(at) ^ own;
+    }
+  vec3 columns = rows[0] + rows[1] + rows[2], change = rows[2] - rows[0];
+  perTexel = vec2(columns.z - columns.x, change.x + change.y + change.z) / 6.0;
+  float most = 0.0;
+  [[unroll]] for (int y = 0; y < 3; ++y) {
+    vec3 off = abs(rows[y] - rows[1].y - float(y - 1) * perTexel.y - vec3(-perTexel.x, 0.0, perTexel.x));
+    most = max(most, max(off.x, max(off.y, off.z)));
+  }
+  return different == 0u && own >> 8 == kAllPixels && most < nearPlane; // none ends
+}
+
+// The texel of a quad with a surface.
+uvec4 texelOf(ivec2 first, ivec2 quad) {
+  int place = placeOf(quad);
+  float own = depths[place];
+  uint material = materialOf(surfaceAt(place)), pixels = pixelsOf(surfaceAt(place));
+  vec2 size = texelSize(own, 1u), ray = facingRayAt(pixelOf(1u, first + quad)), perSize = 1.0 / max(size, vec2(1.0e-30));
+  vec2 perTexel, limb = vec2(1.0);
+  if (!slopeOfPlane(place, kNearPlane * min(size.x, size.y), perTexel)) {
+    perTexel = slopeOfQuads(place, material, own, centerOf(pixels), size, ray);
+    float reach = 2.0 * kSteepest * min(size.x, size.y);
+    limb = vec2(limbOf(place, 1, own, perTexel.x, reach), limbOf(place, kRow, own, perTexel.y, reach));
+  }
   vec2 slope = limb * perTexel * perSize;
   float area = areaOf(1u, first + quad, limb * slope) * 0.25 * float(bitCount(pixels));
   return packTexel(Texel(unpackHalves(colors[place]), area, material, own, slope), pixels == kAllPixels ? kPlane : 0u);

@@ -53,11 +53,12 @@ void main() {
       barrier();
     }
     ivec2 at = ivec2(invocation & (size.x + 1), firstRow + (invocation >> findMSB(size.x + 2))), texel = corner + at;
-    bool inside = all(lessThan(at, size)), makes = inside && anySurface != 0u && contains(levelRect(uint(level)), texel);
+    bool inside = all(lessThan(at, size)), exists = contains(levelRect(uint(level)), texel);
+    bool makes = inside && exists && anySurface != 0u; // texels of nothing are nothing
     uvec4 bits = makes ? downsampled(uint(level - 1), texel, from + 2 * at.y * stride + at.x, stride) : uvec4(0u);
     barrier(); // parts of level 4 lie where their input was
     if (inside) keepTexel(to + slot(at, size.x), bits);
-    if (contains(ivec4(own, own + kOwn), texel >> shift) && contains(levelRect(uint(level)), texel)) writeLevel(uint(level), texel, bits);
+    if (exists && contains(ivec4(own, own + kOwn), texel >> shift)) writeLevel(uint(level), texel, bits);
     barrier();
     if (part < kParts - 1) continue;
     from = to;

@@ -133,9 +133,28 @@ float tangentPlaneWeight(TangentPlane plane, float off, vec2 x, vec2 falloff) {
   return rest * rest;
 }
 
+// Unit normal, towards the eye, of the surface that a pixel shows: that of the quad whose plane is nearest to the pixel. pyramidImage
+// holds level 1. `front`, `material`: of the pixel.
+vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
+  vec2 size = texelSize(front, 0u), ray = facingRayAt(vec2(pixel)), slope = vec2(0.0);
+  ivec2 toward = 2 * (pixel & 1) - 1;
+  float least = kNoDepth;
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 quad = (pixel >> 1) + toward * ivec2(i & 1, i >> 1);
+    // The pixel's own quad has been written, as the pixel has a material.
+    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenTexel(1u, quad, false));
+    float off = abs(front - t.depth - dot(t.slope, (vec2(pixel) - pixelOf(1u, quad)) * size));
+    if (t.area == 0.0 || t.material != material || off >= least) continue;
+    least = off;
+    slope = t.slope;
+    if (off * off * inverseSpread(slope, ray, size) < 1.0) break; // within a pixel's side
+  }
+  return normalOfSlope(slope, ray);
+}
+
 // Unit normal, towards the eye, of the surface that a pixel shows: linear between the quads around it, as far as they lie on one
 // surface with the pixel. pyramidImage holds level 1. `front`, `material`: of the pixel.
-vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
+vec3 normalBetween(ivec2 pixel, float front, uint material) {
   vec2 size = texelSize(front, 0u), ray = facingRayAt(vec2(pixel));
   ivec2 toward = 2 * (pixel & 1) - 1;
   vec3 sum = vec3(0.0);

@@ -46,8 +46,12 @@ ivec2 stepsOf(Surface x, ViewRay ray, float front, float reach) {
 // Mean curvature of the surface around x, 1/mm, positive where convex; 0 where it does not go on.
 float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reach) {
   ivec2 steps = stepsOf(x, ray, front, reach);
-  Beside a = acrossOf(besideAt(pixel + ivec2(steps.x, 0), x, reach), besideAt(pixel - ivec2(steps.x, 0), x, reach));
-  Beside b = acrossOf(besideAt(pixel + ivec2(0, steps.y), x, reach), besideAt(pixel - ivec2(0, steps.y), x, reach));
+  Beside a, b = Beside(vec4(0.0), vec3(0.0));
+  [[dont_unroll]] for (int axis = 0; axis < 2; ++axis) {
+    ivec2 step = axis == 0 ? ivec2(steps.x, 0) : ivec2(0, steps.y);
+    a = b;
+    b = acrossOf(besideAt(pixel + step, x, reach), besideAt(pixel - step, x, reach));
+  }
   // The curvature is half the trace of the map from steps to turns.
   float area = dot(x.normal, cross(a.apart.xyz, b.apart.xyz));
   float least = 0.1 * sqrt(dot(a.apart.xyz, a.apart.xyz) * dot(b.apart.xyz, b.apart.xyz));
@@ -70,14 +74,21 @@ BackFace backAt(ivec2 pixel) {
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 
-// Step along an axis of the image on the back face, to the nearer side, because the other may lie across an edge. `chord` grows to
-// the lesser of both sides' chords: a crease of a pixel's width, whose back face lies close, is no thin body.
-bool backSlope(ivec2 pixel, ivec2 axis, vec3 back, inout float chord, out vec3 slope) {
-  BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
-  vec3 forward = f.position - back, backward = back - b.position;
-  slope = f.chord > 0.0 && !(b.chord > 0.0 && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
-  chord = max(chord, min(f.chord, b.chord));
-  return f.chord > 0.0 || b.chord > 0.0;
+// Steps across and along the image on the back face, to the nearer side each, because the other may lie across an edge. `chord` grows
+// to the lesser of both sides' chords: a crease of a pixel's width, whose back face lies close, is no thin body. False: one is not known.
+bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
+  bool known = true;
+  steps[1] = vec3(0.0);
+  [[dont_unroll]] for (int i = 0; i < 2; ++i) {
+    ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1);
+    BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
+    vec3 forward = f.position - back, backward = back - b.position;
+    steps[0] = steps[1];
+    steps[1] = f.chord > 0.0 && !(b.chord > 0.0 && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
+    chord = max(chord, min(f.chord, b.chord));
+    known = known && (f.chord > 0.0 || b.chord > 0.0);
+  }
+  return known;
 }
 
 const float kThick = 1.0e6;          // mm
@@ -92,12 +103,11 @@ float thicknessAt(ivec2 pixel, Surface x) {
   BackFace back = backAt(pixel);
   if (!(back.chord > 0.0)) return kThick;
   float chord = back.chord;
-  vec3 across, along, ray = (back.position - x.position) / back.chord, normal = -x.normal;
-  bool slopes = backSlope(pixel, ivec2(1, 0), back.position, chord, across);
-  slopes = backSlope(pixel, ivec2(0, 1), back.position, chord, along) && slopes;
-  vec3 n = cross(across, along);
+  vec3 steps[2], ray = (back.position - x.position) / back.chord, normal = -x.normal;
+  bool known = backSteps(pixel, back.position, chord, steps);
+  vec3 n = cross(steps[0], steps[1]);
   float squared = dot(n, n);
-  if (slopes && squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
+  if (known && squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
   float h = 0.5 * chord * frame.camera.range.w * (abs(dot(ray, x.normal)) + abs(dot(ray, normal))) / max(opposite, 0.01);
   return isWithin(h, 0.0, kThick) ? h : kThick;

@@ -29,7 +29,7 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
   uint m = place.material - 1u;
   ivec2 pixel = pixelInCell(cell, side, place.index);
   ViewRay ray = viewRay(frame.camera, pixel);
-  place.normal = normalOfPixel(pixel, place.front, place.material);
+  place.normal = normalBetween(pixel, place.front, place.material);
   Surface x = Surface(ray.origin + place.front * ray.direction, place.normal, normalize(ray.direction), -1.0, place.material);
   BodyFactors body = bodyAt(pixel, x, ray, place.front, m);
   // Packed before lights are gathered, whose sums need the registers.
