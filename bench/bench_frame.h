@@ -63,14 +63,14 @@ struct Variant {
 // The output of a run of the variant.
 harness::Image outputOf(harness::Device& device, const Variant& variant);
 
-// Unit normals in view space, of the surfaces that front depths show, 8 bits a component: what published passes read of a
-// G-buffer.
+// Unit normals in view space, of the surfaces that front depths show, 8 bits a component: what published
+// passes read of a G-buffer.
 std::shared_ptr<const harness::GpuImage> normalsOf(harness::Device& device, const harness::Capture& capture);
 
 class BenchFrame {
 public:
-  // `inputs`: the capture's on the device, if frames share them. `normals`: for published passes, as normalsOf() makes
-  // them.
+  // `inputs`: the capture's on the device, if frames share them. `normals`: for published passes, as
+  // normalsOf() makes them.
   BenchFrame(harness::Device& device, const harness::Context& context, const harness::Capture& capture,
              const std::vector<PellucidMaterial>& materials, const harness::ReplaySettings& settings,
              const std::shared_ptr<const harness::InputImages>& inputs = nullptr,

@@ -139,8 +139,8 @@ public:
     inputs_ = std::make_shared<InputImages>(device, withoutAlbedo_, ReplaySettings());
     why_ = whyNotRendered(capture_, materials_);
     if (!why_.empty()) return;
-    others_ = std::make_shared<BenchFrame>(device, context, withoutAlbedo_, materials_, transmittanceSettings(), inputs_,
-                                           normalsOf(device, capture_));
+    others_ = std::make_shared<BenchFrame>(device, context, withoutAlbedo_, materials_,
+                                           transmittanceSettings(), inputs_, normalsOf(device, capture_));
     diffusionsOfOthers_ = baselines(others_);
   }
 

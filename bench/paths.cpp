@@ -101,8 +101,8 @@ private:
   Method published(const std::string& name) {
     return {name, [=, this](const Capture& capture) {
               const auto frame =
-                  std::make_shared<BenchFrame>(device_, context_, capture, materials_, transmittanceSettings(), nullptr,
-                                               normalsOf(device_, capture));
+                  std::make_shared<BenchFrame>(device_, context_, capture, materials_,
+                                               transmittanceSettings(), nullptr, normalsOf(device_, capture));
               const std::vector<WholeFrame> all = fastestWholeFrames(frame);
               const auto found =
                   std::find_if(all.begin(), all.end(), [&](const WholeFrame& w) { return w.variant.name == name; });

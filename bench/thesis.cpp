@@ -147,8 +147,8 @@ private:
     const PellucidFrame& f = frame_->images();
     dispatch(commandBuffer, pass,
              {frame_->planned(PELLUCID_BINDING_LIGHTS), frame_->planned(PELLUCID_BINDING_SHADOWS),
-              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(),
-              f.material, frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
+              frame_->planned(PELLUCID_BINDING_MATERIALS), front_->use(), chordOrBack.use(), f.material,
+              frame_->planned(PELLUCID_BINDING_SHADOW_IMAGES), transmitted_->use()});
   }
   void dispatch(VkCommandBuffer commandBuffer, const ComputePass& pass,
                 std::vector<Resource> resources) const {

@@ -39,9 +39,8 @@ Image evaluate(const Capture& capture, const Transmitted& transmitted) {
   for (int y = 0; y < capture.height; ++y)
     for (int x = 0; x < capture.width; ++x) {
       const auto surface = surfaces.at(x, y);
-      if (!surface ||
-          capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
-                           static_cast<size_t>(x)] == 0)
+      if (!surface || capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
+                                       static_cast<size_t>(x)] == 0)
         continue;
       const glm::dvec3 position = surfaces.worldFromView() * glm::dvec4(surface->position, 1);
       const glm::dvec3 normal = glm::dmat3(surfaces.worldFromView()) * surface->normal;
@@ -133,9 +132,9 @@ Capture ear() {
 
 void requireRightTransmittance(Device& device, const Context& context, const PellucidMaterial& material) {
   const Capture capture = ear();
-  const auto frame = std::make_shared<const BenchFrame>(device, context, capture, std::vector{material},
-                                                        transmittanceSettings(), nullptr,
-                                                        normalsOf(device, capture));
+  const auto frame =
+      std::make_shared<const BenchFrame>(device, context, capture, std::vector{material},
+                                         transmittanceSettings(), nullptr, normalsOf(device, capture));
   for (const Case& c : kCases) {
     const Slab transmittance = c.slab(material);
     const Variant pass = c.pass(frame).variant;

@@ -274,7 +274,8 @@ Json describe(const std::filesystem::path& path) {
   json["missing"] = missingParts(capture, materials);
   std::vector<std::string> warnings;
   if (manifest.hasNormal)
-    warnings.push_back("the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");
+    warnings.push_back(
+        "the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");
   checkConventions(capture, materials, warnings);
   checkPixels(capture, camera, warnings);
   for (auto& sentences : {coarseTables(capture), thinBodies(capture, materials)})

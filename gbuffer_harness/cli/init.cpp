@@ -90,10 +90,11 @@ void addInitCommand(const Command& app) {
   cameras.option("--up", options->up, "X,Y,Z: up in the world (default: 0,1,0)");
   const Command buffers =
       command.group("Buffers: a layer, a channel, or a file without extension, in place of the guess");
-  const std::pair<const char*, Role> roles[] = {
-      {"--front-depth", Role::FrontDepth}, {"--back-depth", Role::BackDepth},
-      {"--irradiance", Role::Irradiance},  {"--albedo", Role::Albedo},
-      {"--material-index", Role::Material}};
+  const std::pair<const char*, Role> roles[] = {{"--front-depth", Role::FrontDepth},
+                                                {"--back-depth", Role::BackDepth},
+                                                {"--irradiance", Role::Irradiance},
+                                                {"--albedo", Role::Albedo},
+                                                {"--material-index", Role::Material}};
   for (const auto& [name, role] : roles) buffers.option(name, options->roles[role]);
   const Command meanings = command.group("Meaning");
   meanings.option("--depth", options->depth, "viewz or device (default: device where all are within 0 .. 1)")

@@ -305,7 +305,8 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   const glm::dvec2 pixel = glm::floor(camera.project(surface.position));
   const double planar = camera.planarDepth(surface.position);
   const glm::dvec3& normal = surface.normal;
-  // Pixels that `reach` takes on the tangent plane, at least to the next quad; planes seen edge-on would have no end.
+  // Pixels that `reach` takes on the tangent plane, at least to the next quad; planes seen edge-on would have
+  // no end.
   const auto stepsAlong = [&](glm::dvec2 step) {
     glm::dvec3 side = camera.position(pixel + step, planar) - camera.position(pixel, planar);
     side -= surface.ray * (glm::dot(normal, side) / std::min(glm::dot(normal, surface.ray), -0.1));

@@ -15,15 +15,16 @@ namespace pellucid::harness::reference {
 struct Surface {
   glm::dvec3 position;
   glm::dvec3 ray;     // unit, from the eye to the position
-  glm::dvec3 normal;  // unit, towards the eye: of the pixel's quad; against the ray where depths span no plane
+  glm::dvec3 normal;  // unit, towards the eye, of the pixel's quad; against the ray if depths have no plane
   glm::dvec3 middle;  // of the quad, where its surface has that normal
   glm::ivec2 pixel;
   std::optional<double> chord;  // length of the ray between the front and back surface, > 0
 };
 
-// Quads are squares of 2 x 2 pixels from the image's first pixel on. A quad's surface is its nearest pixel with a
-// material, and the pixels of that material within reach of it. A plane through the middles of the quads around
-// has its normal: normals of single pixels turn from triangle to triangle, and with the rounding of depths.
+// Quads are squares of 2 x 2 pixels from the image's first pixel on. A quad's surface is its nearest pixel
+// with a material, and the pixels of that material within reach of it. A plane through the middles of the
+// quads around has its normal: normals of single pixels turn from triangle to triangle, and with the rounding
+// of depths.
 class SurfaceReader {
 public:
   // Keeps a reference to the capture. Throws InputError when an image is missing or has the wrong size.
@@ -32,8 +33,8 @@ public:
   // Nothing where the front depth holds nothing. Pixel center of (x, y).
   std::optional<Surface> at(int x, int y) const;
 
-  // Unit normals of the front and back depths of the surface's pixel and the pixels beside, view space, towards
-  // the eye. Where depths span no plane, the front's is against the ray, and the back has none.
+  // Unit normals of the front and back depths of the surface's pixel and the pixels beside, view space,
+  // towards the eye. Where depths span no plane, the front's is against the ray, and the back has none.
   glm::dvec3 facet(const Surface& surface) const;
   std::optional<glm::dvec3> backFacet(const Surface& surface) const;
 
@@ -64,8 +65,8 @@ private:
   // One that has no surface beyond the image.
   Quad quadAt(glm::ivec2 place) const;
   std::optional<glm::dvec3> quadNormal(glm::ivec2 place) const;
-  // From a quad to whichever of its neighbors along an axis is nearer in depth and of the same material: the other
-  // one may lie across an edge. That of a facing surface where there is none.
+  // From a quad to whichever of its neighbors along an axis is nearer in depth and of the same material: the
+  // other one may lie across an edge. That of a facing surface where there is none.
   glm::dvec3 quadSlope(glm::ivec2 place, glm::ivec2 step) const;
   glm::dvec3 slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
                         const glm::dvec3& position) const;

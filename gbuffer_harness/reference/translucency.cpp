@@ -85,12 +85,12 @@ Translucency::Receiver Translucency::toWorld(const Surface& s, const PellucidMat
   const glm::dmat4& m = surfaces_.worldFromView();
   const glm::dmat3 rotation(m);
   return {glm::dvec3(m * glm::dvec4(s.position, 1)),
-             rotation * s.ray,
-             rotation * surfaces_.facet(s),
-             s.chord,
-             index,
-             &material,
-             &s};
+          rotation * s.ray,
+          rotation * surfaces_.facet(s),
+          s.chord,
+          index,
+          &material,
+          &s};
 }
 
 double angleFactor(const TranslucencySettings& settings, double x, double minimumDot) {

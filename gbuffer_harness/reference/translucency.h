@@ -27,8 +27,8 @@ struct Transmission {
   glm::dvec3 transmitted{0};              // sum of T(d) times the unoccluded back irradiance
 };
 
-// Value of settings.angleModel, any but NORMAL, for x, the cosine between the view ray and the direction to the
-// light, -1..1. minimumDot: the light's, of the models that have one.
+// Value of settings.angleModel, any but NORMAL, for x, the cosine between the view ray and the direction to
+// the light, -1..1. minimumDot: the light's, of the models that have one.
 double angleFactor(const TranslucencySettings& settings, double x, double minimumDot);
 
 class Translucency {

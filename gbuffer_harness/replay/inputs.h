@@ -16,7 +16,8 @@ class InputImages {
 public:
   struct Images {
     FrameShape shape;
-    std::shared_ptr<GpuImage> frontDepth, backDepth, irradiance, hiddenIrradiance, albedo, material, motion;  // null: none
+    std::shared_ptr<GpuImage> frontDepth, backDepth, irradiance, hiddenIrradiance, albedo, material,
+        motion;  // null: none
     std::vector<std::shared_ptr<GpuImage>> shadows;
   };
 

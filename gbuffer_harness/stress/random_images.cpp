@@ -57,7 +57,8 @@ glm::dvec3 View::normal(int x, int y) const {
     return point(column, row, p == 0 ? here : p);
   };
   const glm::dvec3 axis(0, 0, -sign);
-  const glm::dvec3 cross = glm::cross(pointAt(x + 1, y) - pointAt(x - 1, y), pointAt(x, y + 1) - pointAt(x, y - 1));
+  const glm::dvec3 cross =
+      glm::cross(pointAt(x + 1, y) - pointAt(x - 1, y), pointAt(x, y + 1) - pointAt(x, y - 1));
   const double length = glm::length(cross);
   if (!(length > 0)) return axis;
   const glm::dvec3 toEye = perspective ? -point(x, y, here) : axis;

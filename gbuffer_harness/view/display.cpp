@@ -84,12 +84,9 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   const PellucidFrame& frame = frames.run(shown).frame();
   const GpuImage* const truth = frames.truth();
   const auto orWhite = [&](const PellucidImage& image) { return image.view ? image : white_.use(); };
-  const PellucidImage images[kBindings] = {frame.output,
-                                           frame.irradiance,
-                                           orWhite(frame.albedo),
-                                           frame.material,
-                                           frame.frontDepth,
-                                           truth ? truth->use() : white_.use()};
+  const PellucidImage images[kBindings] = {frame.output,          frame.irradiance,
+                                           orWhite(frame.albedo), frame.material,
+                                           frame.frontDepth,      truth ? truth->use() : white_.use()};
   DescriptorWrites writes;
   for (std::uint32_t i = 0; i < kBindings; ++i)
     writes.image(i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampler_, images[i]);

@@ -23,9 +23,8 @@ bool isFalseColor(Shown shown) {
 }
 
 const std::vector<std::string>& shownNames() {
-  static const std::vector<std::string> names = {"after",  "before",   "through",     "difference",
-                                                 "truth",  "debug",    "front depth", "albedo",
-                                                 "material"};
+  static const std::vector<std::string> names = {"after", "before",      "through", "difference", "truth",
+                                                 "debug", "front depth", "albedo",  "material"};
   return names;
 }
 

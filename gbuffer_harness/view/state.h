@@ -25,7 +25,7 @@ enum class Shown {
   Debug,       // settings.debugView in false color
   FrontDepth,  // as the capture stores it, in false color
   Albedo,
-  Material,    // index, in false color
+  Material,  // index, in false color
 };
 
 struct Display {

@@ -123,7 +123,7 @@ TEST_F(EngineFrames, PreExposureScalesTheResult) {
     };
     // The diffusion works in halves: of a power of two the darkest alone lose bits, of others all are rounded
     // anew.
-    EXPECT_LT(unscaled(c, factor), factor == 0.25f ? 1e-4 : kHalf) << factor;
+    EXPECT_LT(unscaled(c, factor), factor == 0.25f ? 1e-4 : 1.0 / 2048) << factor;
     // An image that holds the factor without saying so gets too much light that comes through.
     Capture silent = c;
     for (float& v : silent.irradiance.data) v *= factor;

@@ -71,8 +71,8 @@ Capture spoiled(PellucidDepthEncoding encoding) {
   map.depthBiasConstant = 1e-3;
   map.depthBiasSlope = encoding == PELLUCID_DEPTH_DEVICE ? 2 : 0;
   size_t seed = 1;
-  for (Image* image : {&c.frontDepth.image, &c.backDepth.image, &c.irradiance, &c.albedo, &map.depth.image,
-                       &map.exitDepth})
+  for (Image* image :
+       {&c.frontDepth.image, &c.backDepth.image, &c.irradiance, &c.albedo, &map.depth.image, &map.exitDepth})
     spoil(*image, seed++);
   return c;
 }

@@ -107,8 +107,8 @@ TEST_F(Gather, ConstantLightStaysConstant) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(out.at(4, 4)[k], 3, 6e-3);
 }
 
-// Without diffusion, light that enters where the camera sees it stays there: nothing comes through. The front recedes by 1.5 mm
-// a mm.
+// Without diffusion, light that enters where the camera sees it stays there: nothing comes through. The front
+// recedes by 1.5 mm a mm.
 TEST_F(Gather, SlopesThatTheCameraSeesAreNotHidden) {
   Capture c = flatCapture(48, 48, 20);
   c.lights = {frontLight()};

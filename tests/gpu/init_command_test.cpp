@@ -37,7 +37,10 @@ TEST_F(InitCommand, WritesAManifestThatReplays) {
 
 // Engines' normals follow normal maps, and would turn surfaces away from their depths.
 TEST_F(InitCommand, ABufferOfNormalsChangesNoBit) {
-  ASSERT_EQ(run("init " + path("s.exr") + " --fov 20 --unit mm --light directional:0,0,1:3 -o " + path("c.json")).code, 0);
+  ASSERT_EQ(
+      run("init " + path("s.exr") + " --fov 20 --unit mm --light directional:0,0,1:3 -o " + path("c.json"))
+          .code,
+      0);
   const std::string replay = "replay " + path("c.json") + " --repeat 0 -o " + path("o.exr");
   expect(0, replay, "wrote");
   const std::string without = bytes("o.exr");

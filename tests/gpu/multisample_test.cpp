@@ -154,12 +154,10 @@ protected:
                           {device(), kSide, kSide, VK_FORMAT_R32_SFLOAT}};
     GpuImage colors[2] = {{device(), kSide, kSide, kWide}, {device(), kSide, kSide, kWide}};
     GpuImage index(device(), kSide, kSide, VK_FORMAT_R32_UINT);
-    for (GpuImage* image : {&depths[0], &depths[1], &colors[0], &colors[1], &index})
-      image->clear();
-    resolve.run(
-        {front->use(), material.use(), light->use(), depths[0].use(), index.use(), colors[0].use(),
-         back->use(), depths[1].use(), albedo->use(), colors[1].use()},
-        {0, 0, kSide, kSide, 0xFF00, 8});
+    for (GpuImage* image : {&depths[0], &depths[1], &colors[0], &colors[1], &index}) image->clear();
+    resolve.run({front->use(), material.use(), light->use(), depths[0].use(), index.use(), colors[0].use(),
+                 back->use(), depths[1].use(), albedo->use(), colors[1].use()},
+                {0, 0, kSide, kSide, 0xFF00, 8});
     Capture small = c;
     small.width = small.height = kSide;
     small.material.resize(kSide * kSide);

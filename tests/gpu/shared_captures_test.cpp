@@ -195,10 +195,9 @@ TEST_F(GpuTest, HeadAgreesWithCycles) {
       ours += e;
       theirs += of;
       lit += std::max(e, of) > 0.2;
-      // Cycles smoothed the normals anew, by 0.9 degrees in the median.
-      arriving += std::abs(e - of) > 0.05;
+      // Cycles smoothed the normals anew, by 0.9 degrees in the median: that changes irradiances of up to 4.
+      arriving += std::abs(e - of) > 0.2;
     }
-  std::printf("XX %d %d %g %g\n", lit, arriving, ours, theirs);
   EXPECT_GT(covered, 70000);
   EXPECT_GT(lit, 30000);
   // Pixels where a silhouette or a crease falls on the other side, or, for light, a shadow's edge.
@@ -206,6 +205,7 @@ TEST_F(GpuTest, HeadAgreesWithCycles) {
   EXPECT_LT(front, covered / 1000);
   EXPECT_LT(back, covered / 1000);
   EXPECT_LT(arriving, lit / 50);
+  EXPECT_NEAR(ours, theirs, 1e-3 * theirs);
   // The mesh is closed; a sliver's facing may be rounded differently from its coverage.
   EXPECT_LE(result.openPixels, 3u);
 }

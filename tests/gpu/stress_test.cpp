@@ -36,8 +36,7 @@ std::string bytesOf(const std::vector<float>& values) {
 // Of the frame's settings, G-buffer and lights.
 std::string contents(const StressFrame& f) {
   std::string all = settingsJson(f.settings) + debugOption(f.settings);
-  for (const Image* image : {&f.capture.frontDepth.image, &f.capture.irradiance})
-    all += bytesOf(image->data);
+  for (const Image* image : {&f.capture.frontDepth.image, &f.capture.irradiance}) all += bytesOf(image->data);
   all.append(f.capture.material.begin(), f.capture.material.end());
   for (const Light& light : f.capture.lights) {
     all += std::to_string(light.intensity);

@@ -255,12 +255,11 @@ TEST_F(ThinWall, AgreesWithTheReference) {
     bool source;
     bool back, maps;
   };
-  for (const Row& row :
-       {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, 0, true, true},
-        Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, 0, true, true},
-        Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, 1, false, true},
-        Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, 1, true, true},
-        Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, false, false}})
+  for (const Row& row : {Row{"ear", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_DEVICE, 0, true, true},
+                         Row{"ear", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_VIEW_Z, 0, true, true},
+                         Row{"torus", PELLUCID_LIGHT_SPOT, PELLUCID_DEPTH_DISTANCE, 1, false, true},
+                         Row{"blades", PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_DEPTH_VIEW_Z, 1, true, true},
+                         Row{"sphere", PELLUCID_LIGHT_POINT, PELLUCID_DEPTH_DEVICE, 0, false, false}})
     for (const bool solid : {false, true}) {
       SCOPED_TRACE(testing::Message() << row.scene << " solid " << solid);
       Capture c = makeScene({.name = row.scene,

@@ -321,8 +321,9 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
 
 // Engines have them, and the shared captures, too. Nothing of them is read: not even their file.
 TEST_F(Manifests, NormalsMayBeThere) {
-  for (const json& normal : {json{{"constant", {0, 0, 1}}, {"space", "view"}},
-                             json{{"file", "none.exr"}, {"channels", {"N.X", "N.Y", "N.Z"}}, {"encoding", "unorm"}}}) {
+  for (const json& normal :
+       {json{{"constant", {0, 0, 1}}, {"space", "view"}},
+        json{{"file", "none.exr"}, {"channels", {"N.X", "N.Y", "N.Z"}}, {"encoding", "unorm"}}}) {
     manifest["buffers"]["normal"] = normal;
     EXPECT_TRUE(sameBits(read().irradiance, sample.irradiance));
     EXPECT_TRUE(readManifest(directory / "m.json").hasNormal);
@@ -391,8 +392,7 @@ TEST_F(Manifests, MaterialsThatAreNoNumbersAreNamed) {
 TEST_F(Manifests, AConstantCaptureHasNoSize) {
   for (auto& [name, buffer] : manifest["buffers"].items()) {
     const json encoding = buffer.value("encoding", json());
-    buffer = {{"constant",
-               std::vector<double>(name == "albedo" || name == "irradiance" ? 3 : 1, 1)}};
+    buffer = {{"constant", std::vector<double>(name == "albedo" || name == "irradiance" ? 3 : 1, 1)}};
     if (!encoding.is_null()) buffer["encoding"] = encoding;
   }
   manifest.erase("truth");

@@ -139,7 +139,7 @@ TEST_P(GatherModel, IsNearTheTruth) {
 const Shape kShapes[] = {
     {"slab", {{"thickness", 2}, {"extent", 40}}, 0.05, 0.05},
     {"wedge", {{"angle", 20}, {"extent", 24}}, 0.06, 0.11},
-    {"sphere", {{"radius", 4}, {"extent", 10}}, 0.36, 0.38},
+    {"sphere", {{"radius", 4}, {"extent", 10}}, 0.40, 0.38},
     {"torus", {{"majorRadius", 6}, {"tube", 0.35}, {"tilt", 0.4 * 180 / M_PI}, {"extent", 20}}, 0.16, 0.27}};
 
 INSTANTIATE_TEST_SUITE_P(Shapes, GatherModel,

@@ -210,9 +210,9 @@ TEST_F(Init, BlendersPassesAreKnown) {
   Image combined = frame_.irradiance;
   std::vector<Channel> channels = {{"ViewLayer.Depth.Z", &frame_.frontDepth.image, 0},
                                    {"ViewLayer.IndexMA.X", &id, 0}};
-  for (const auto& layer :
-       {triple("ViewLayer.DiffDir.", "RGB", frame_.irradiance),
-        triple("ViewLayer.Combined.", "RGB", combined), triple("ViewLayer.Normal.", "XYZ", frame_.irradiance)})
+  for (const auto& layer : {triple("ViewLayer.DiffDir.", "RGB", frame_.irradiance),
+                            triple("ViewLayer.Combined.", "RGB", combined),
+                            triple("ViewLayer.Normal.", "XYZ", frame_.irradiance)})
     channels.insert(channels.end(), layer.begin(), layer.end());
   write("render.exr", channels);
   InitWords words;

@@ -107,7 +107,7 @@ TEST(Plan, PassesAndSkipsFollowTheFrame) {
          f.frame.options.gatherSamples = 8;
          f.maps[0].options.backFaces = 1;
        },
-       {"base level", "downsample", "probes", "downsample", "filter probes", "downsample", "upsample", "diffuse",
+       {"base level", "downsample", "probes", "coarse levels", "filter probes", "upsample", "diffuse",
         "translucency"},
        "gather",
        1}};

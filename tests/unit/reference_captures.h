@@ -70,9 +70,10 @@ inline double halfPlaneCoverage(glm::dvec2 corner, double pixel, glm::dvec2 dire
 }
 
 // A ball of 8 mm seen along (.4, -.3, -1), by a camera that looks along -z and is sheared, or by one that
-// looks that way. Gets the cosines between the ball's normals and the rays, 0 beside the ball. `light`: irradiance
-// of a point of the ball, mm from its center.
-inline Capture obliqueBall(bool sheared, double* cosines, const std::function<double(const glm::dvec3&)>& light) {
+// looks that way. Gets the cosines between the ball's normals and the rays, 0 beside the ball. `light`:
+// irradiance of a point of the ball, mm from its center.
+inline Capture obliqueBall(bool sheared, double* cosines,
+                           const std::function<double(const glm::dvec3&)>& light) {
   constexpr int kSide = 80;
   constexpr double kRadius = 8, kPixel = 0.25;
   const glm::dvec3 along(0.4, -0.3, -1), direction = glm::normalize(along);
@@ -109,8 +110,7 @@ inline Capture obliqueBall(bool sheared, double* cosines, const std::function<do
       const glm::dvec3 p = origin - (b + std::sqrt(inside)) * direction, n = p / kRadius;
       c.frontDepth.image.data[pixel] = static_cast<float>(-(viewFromWorld * glm::dvec4(p, 1)).z);
       cosines[pixel] = -glm::dot(n, direction);
-      for (std::size_t i = 0; i < 3; ++i)
-        c.irradiance.data[3 * pixel + i] = static_cast<float>(light(p));
+      for (std::size_t i = 0; i < 3; ++i) c.irradiance.data[3 * pixel + i] = static_cast<float>(light(p));
     }
   return c;
 }

@@ -95,8 +95,8 @@ TEST(ReferenceCamera, ShearedViewsSeeTheBodyOfStraightOnes) {
         if (!(cosines[pixel] > kCosine)) continue;
         const std::optional<Surface> s = surfaces.at(x, y);
         ASSERT_TRUE(s);
-        // Half a quad off, by .25 mm of the ball's 8, along the steepest way.
-        EXPECT_NEAR(-glm::dot(s->normal, s->ray), cosines[pixel], 0.05);
+        // Planes of 3 x 3 quads, 1.5 mm of a ball of 8 mm.
+        EXPECT_NEAR(-glm::dot(s->normal, s->ray), cosines[pixel], 0.1);
         const SurfaceReader::Footprint f = surfaces.footprint(x, y, *s);
         const double part = 4 * glm::length(glm::cross(f.halfX, f.halfY));
         area += part;
@@ -107,6 +107,42 @@ TEST(ReferenceCamera, ShearedViewsSeeTheBodyOfStraightOnes) {
     light[sheared] = sum / area;
   }
   EXPECT_NEAR(light[1], light[0], 0.01 * light[0]);
+}
+
+// A plane with a step of 5 mm through the middle of quads, and a pixel of another material by itself.
+TEST(ReferenceSurface, QuadsHaveTheNormalOfTheirPlane) {
+  Capture c = facingPlane(9, 7, 0.5);
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const glm::dvec2 p = planePoint(c, x + 0.5, y + 0.5);
+      *c.frontDepth.image.at(x, y) = static_cast<float>(100 + 0.5 * p.x - 0.25 * p.y + (x > 4 ? 5 : 0));
+    }
+  c.material[0] = 2;
+  const SurfaceReader surfaces(c);
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.5, -0.25, 1));
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) {
+      const std::optional<Surface> s = surfaces.at(x, y);
+      ASSERT_TRUE(s);
+      const glm::dvec3 expected = x + y == 0 ? glm::dvec3(0, 0, 1) : normal;
+      EXPECT_NEAR(glm::distance(s->normal, expected), 0, 1e-4) << x << ", " << y;
+    }
+}
+
+// Rounding turns pixels' normals four times as far as quads'.
+TEST(ReferenceSurface, QuadsSmoothTheRoundingOfDepths) {
+  Capture c = facingPlane(40, 40, 0.25);
+  for (std::size_t i = 0; i < c.frontDepth.image.data.size(); ++i)
+    c.frontDepth.image.data[i] += static_cast<float>(0.01 * std::sin(1.7 * double(i * i)));
+  const SurfaceReader surfaces(c);
+  double pixels = 0, quads = 0;
+  for (int y = 2; y < 38; ++y)
+    for (int x = 2; x < 38; ++x) {
+      const Surface s = *surfaces.at(x, y);
+      pixels += std::acos(std::min(surfaces.facet(s).z, 1.0)) / (36 * 36);
+      quads += std::acos(std::min(s.normal.z, 1.0)) / (36 * 36);
+    }
+  EXPECT_LT(quads, 0.25 * pixels) << quads << " of " << pixels;
 }
 
 // Slab 4 mm thick facing the camera, lit from behind, dark in front.
