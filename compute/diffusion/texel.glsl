@@ -148,7 +148,7 @@ vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 quad = (pixel >> 1) + toward * ivec2(i & 1, i >> 1);
     // The pixel's own quad has been written, as the pixel has a material.
-    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenTexel(1u, quad, false));
+    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenQuad(quad, false));
     float off = abs(front - t.depth - dot(t.slope, (vec2(pixel) - pixelOf(1u, quad)) * size));
     if (t.area == 0.0 || t.material != material || off >= least) continue;
     least = off;
