@@ -3,6 +3,7 @@
 #define PELLUCID_LIST_BLOCKS_GLSL
 
 #include "frame/lists.glsl"
+#include "gather/entry_level.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_GATHER_MAPS) uniform GatherMaps { GatherMapConstants maps[PELLUCID_DISPATCH_SHADOWS]; };
 
@@ -46,14 +47,30 @@ void countBlock(uint block, int i, uvec2 cells) {
 const uint kEntryGroupRowWords = 2u, kEntryGroupRows = 64u; // a row has 64 groups
 const uint kEntryGroupWords = uint(PELLUCID_ENTRY_GROUP_WORDS);
 
-// Entry points [xy, zw] of a map that lie within reach of what a block shows between two planar distances.
-vec4 entriesInReach(uint map, uint block, float nearest, float farthest) {
+// What probes of a block may read of a map.
+struct EntriesInReach {
+  vec4 entries; // [xy, zw], of level 0
+  ivec2 levels; // the finest and the coarsest
+};
+
+// Probes round otherwise.
+const float kRounding = 1.001;
+
+// Levels that probes read whose cells and entry points of level 0 have sides from x to y.
+ivec2 levelsOf(vec2 cells, vec2 sides) {
+  return ivec2(entryLevel(kRounding * sides.y, cells.x), entryLevel(sides.x, kRounding * cells.y));
+}
+
+// For the surfaces that a block shows between two planar distances.
+EntriesInReach entriesInReach(uint map, uint block, float nearest, float farthest) {
   ivec2 first = firstPixel(block);
   bool perspective = maps[map].stepX.w != 0.0;
-  float reach = lists.reach.x;
+  float reach = lists.reach.x, side = length(maps[map].stepX.xyz);
+  vec2 cells = vec2(cellSide(nearest, lists.maps.y), cellSide(farthest, lists.maps.y));
+  cells = vec2(min(cells.x, cells.y), max(cells.x, cells.y));
   vec3 least = vec3(3.0e38), most = vec3(-3.0e38);
   vec4 at = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
-  for (int i = 0; i < 8; ++i) {
+  [[dont_unroll]] for (int i = 0; i < 8; ++i) {
     ViewRay ray = viewRay(frame.camera, first + ivec2(i & 1, i >> 1 & 1) * PELLUCID_BLOCK);
     vec3 corner = ray.origin + (i < 4 ? nearest : farthest) * ray.direction;
     least = min(least, corner);
@@ -63,19 +80,23 @@ vec4 entriesInReach(uint map, uint block, float nearest, float farthest) {
   }
   if (!perspective) {
     vec2 around = reach * vec2(length(maps[map].column.xyz), length(maps[map].row.xyz));
-    return at + vec4(-around, around);
+    return EntriesInReach(at + vec4(-around, around), levelsOf(cells, vec2(side)));
   }
   // A box around the corners and all within reach of them projects into what its corners span.
   at = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
-  for (int i = 0; i < 8; ++i) {
+  vec2 depths = vec2(3.0e38, -3.0e38);
+  bool ahead = true;
+  [[dont_unroll]] for (int i = 0; i < 8; ++i) {
     bvec3 far = bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
     vec4 corner = vec4(mix(least - reach, most + reach, far), 1.0);
     float depth = dot(maps[map].depth, corner);
-    if (!(depth > 0.0)) return vec4(-3.0e38, -3.0e38, 3.0e38, 3.0e38); // next to the light: all of the map
+    depths = vec2(min(depths.x, depth), max(depths.y, depth));
+    ahead = ahead && depth > 0.0;
     vec2 entry = vec2(dot(maps[map].column, corner), dot(maps[map].row, corner)) / depth;
     at = vec4(min(at.xy, entry), max(at.zw, entry));
   }
-  return at;
+  if (!ahead) at = vec4(-3.0e38, -3.0e38, 3.0e38, 3.0e38); // next to the light: all of the map
+  return EntriesInReach(at, levelsOf(cells, side * depths));
 }
 
 // The bits [first, last] of a word that begins at bit `begin`.
@@ -84,26 +105,35 @@ uint bitsWithin(int first, int last, int begin) {
   return to >= from ? 0xFFFFFFFFu >> (31 - to + from) << from : 0u;
 }
 
-// Lists the groups in a row of a map that a block needs and that no other has listed.
-void listEntryGroups(uint map, uint block, int row, float nearest, float farthest) {
-  vec4 entries = entriesInReach(map, block, nearest, farthest);
-  ivec2 last = maps[map].place.zw - 1;
-  if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
-  // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
-  ivec4 within = ivec4(floor(clamp(entries, vec4(-1.0), vec4(last + 1, last + 1))));
-  if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;
-  ivec4 groups = ivec4(max(within.xy, ivec2(0)), min(within.zw, last)) / PELLUCID_ENTRY_POINTS_GROUP;
-  if (row < groups.y || row > groups.w) return;
+// Lists the groups [first, last] in a row of a level that no other block has listed.
+void listGroupsInRow(uint map, uint level, uint row, int first, int last) {
+  // The levels' rows of bits follow each other.
+  uint rowsBefore = 2u * kEntryGroupRows - (2u * kEntryGroupRows >> level);
   for (uint i = 0u; i < kEntryGroupRowWords; ++i) {
-    uint bits = bitsWithin(groups.x, groups.z, 32 * int(i));
-    uint at = counterWords() + map * kEntryGroupWords + kEntryGroupRowWords * uint(row) + i;
+    uint bits = bitsWithin(first, last, 32 * int(i)), at = counterWords() + map * kEntryGroupWords + kEntryGroupRowWords * (rowsBefore + row) + i;
     // Read first: neighboring blocks need mostly the same.
     uint added = bits & ~listWords[at];
     if (added != 0u) added &= ~atomicOr(listWords[at], added);
     if (added == 0u) continue;
     uint place = entryList() + atomicAdd(lists.commands[PELLUCID_LIST_ENTRIES].groups.x, bitCount(added));
     for (; added != 0u; added &= added - 1u, ++place)
-      writeWord(place, packEntryGroup(uvec3(32u * i + uint(findLSB(added)), uint(row), map)));
+      writeWord(place, packEntryGroup(EntryGroup(uvec2(32u * i + uint(findLSB(added)), row), level, map)));
+  }
+}
+
+// Lists the groups that a block needs in a row of each level of a map.
+void listEntryGroups(uint map, uint block, int row, float nearest, float farthest) {
+  EntriesInReach reach = entriesInReach(map, block, nearest, farthest);
+  vec4 entries = reach.entries;
+  ivec2 last = maps[map].place.zw - 1;
+  if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
+  // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
+  ivec4 within = ivec4(floor(clamp(entries, vec4(-1.0), vec4(last + 1, last + 1))));
+  if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;
+  within = ivec4(max(within.xy, ivec2(0)), min(within.zw, last));
+  for (int level = reach.levels.x; level <= reach.levels.y; ++level) {
+    ivec4 groups = (within >> level) / PELLUCID_ENTRY_POINTS_GROUP;
+    if (row >= groups.y && row <= groups.w) listGroupsInRow(map, uint(level), uint(row), groups.x, groups.z);
   }
 }
 

@@ -41,9 +41,16 @@ bool goesByLists() { return frame.blocks.w != 0u; }
 // count, so that words hold what base_level.comp wrote.
 uint listedBlock(uint list) { return goesByLists() ? readWord(list + gl_WorkGroupID.x) : gl_WorkGroupID.x; }
 
-// A listed group of entry points: its column and row among the groups of its map, which are at most 64 x 64.
-uint packEntryGroup(uvec3 group) { return group.x | group.y << 8 | group.z << 16; }
-uvec3 unpackEntryGroup(uint word) { return uvec3(word & 0xFFu, word >> 8 & 0xFFu, word >> 16); }
+// A listed group of entry points.
+struct EntryGroup {
+  uvec2 at; // column and row among the groups of its level, which are at most 64 x 64
+  uint level, map;
+};
+
+uint packEntryGroup(EntryGroup group) { return group.at.x | group.at.y << 8 | group.level << 16 | group.map << 24; }
+EntryGroup unpackEntryGroup(uint word) {
+  return EntryGroup(uvec2(word & 0xFFu, word >> 8 & 0xFFu), word >> 16 & 0xFFu, word >> 24);
+}
 
 uint cellWord(ivec2 cell) { return kCellWord + uint(cell.y >> 2); }
 uint cellBit(ivec2 cell) { return 1u << (8 * (cell.y & 3) + cell.x); }

@@ -2,6 +2,7 @@
 #ifndef PELLUCID_PROBE_LIGHT_GLSL
 #define PELLUCID_PROBE_LIGHT_GLSL
 
+#include "gather/entry_level.glsl"
 #include "gather/entry_point.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
@@ -84,7 +85,20 @@ bool findMap(LightConstants light, vec3 position, out uint map, out vec3 point) 
   return false;
 }
 
-uvec4 entryAt(uint map, vec2 place) { return texelFetch(entriesImage, maps[map].place.xy + ivec2(place), 0); }
+// Side of a map's entry points of level 0 at a probe, scene units. Behind a light it is negative, and only less than another.
+float entrySide(LightConstants light, uint map, vec3 position) {
+  return length(maps[map].stepX.xyz) * (directional(light) ? 1.0 : dot(maps[map].depth, vec4(position, 1.0)));
+}
+
+// Level that a probe reads of a map.
+int levelOf(LightConstants light, uint map, vec3 position) {
+  return entryLevel(entrySide(light, map, position), cellSide(position.z * frame.camera.range.x, pass.value.x));
+}
+
+uvec4 entryAt(uint map, vec2 place, int level) {
+  ivec2 size = ivec2(pass.value.z & 0xFFFFu, pass.value.z >> 16 & 0x7FFFu);
+  return texelFetch(entriesImage, entryPlace(maps[map].place.xy, level, size) + (ivec2(place) >> level), 0);
+}
 
 // How far the lit surface is from a point along its light ray: scene units, or a fraction of the way to the light.
 float distanceAhead(bool parallel, float depth, float own) { return parallel ? depth - own : 1.0 - depth / own; }
@@ -93,13 +107,19 @@ float distanceAhead(bool parallel, float depth, float own) { return parallel ? d
 struct GatherRings {
   vec3 axis;
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
-  float entrySide;     // side of an entry point
+  float entrySide;     // of the map's entry points of the level
   float ahead;         // along the light's ray from x to the lit surface
   float tolerance;     // how far a receiver's own exit may be off
   float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
   float shadowed;      // 1: that ray has left the medium before x, for air or an opaque body in it, 0: it has not
   uint map;            // contains x
+  int level;           // that the probe reads of this map
 };
+
+// Level that the probe of the rings reads of any map.
+int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
+  return map == rings.map ? rings.level : levelOf(light, map, position);
+}
 
 const float kSteepestOwn = 4.0; // largest slope of the surface at x within an entry point: 76 degrees
 
@@ -115,8 +135,9 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
-  uvec4 bits = entryAt(rings.map, placeInMap(parallel, point));
-  rings.entrySide = length(maps[rings.map].stepX.xyz) * mm * (parallel ? 1.0 : point.z);
+  rings.level = levelOf(light, rings.map, x.position);
+  rings.entrySide = entrySide(light, rings.map, x.position) * mm * float(1 << rings.level);
+  uvec4 bits = entryAt(rings.map, placeInMap(parallel, point), rings.level);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
   rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
@@ -128,7 +149,8 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float t = clamp(rings.ahead, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
-  bits = findMap(light, guess, map, point) ? entryAt(map, placeInMap(parallel, point)) : kNoEntry;
+  bool inside = findMap(light, guess, map, point);
+  bits = inside ? entryAt(map, placeInMap(parallel, point), levelOf(rings, light, map, x.position)) : kNoEntry;
   if (holdsSurface(bits)) {
     vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
                          (parallel ? toLight : light.position.xyz - guess);
@@ -166,7 +188,7 @@ float insideAt(GatherRings rings, LightConstants light, Surface x, uint map, vec
   float mm = frame.camera.range.w;
   vec3 on = x.position - f / mm * to, point = mapPoint(map, vec4(on, 1.0));
   vec2 place = placeInMap(directional(light), point);
-  uvec4 bits = isInMap(map, place) ? entryAt(map, place) : kNoEntry;
+  uvec4 bits = isInMap(map, place) ? entryAt(map, place, levelOf(rings, light, map, x.position)) : kNoEntry;
   if (!lightEnters(bits)) return 1.0;
   EntryPoint entry = unpackEntry(bits); // without an exit, kNoExit is beyond all
   float perAhead = directional(light) ? 1.0 : distance(light.position.xyz, on);
@@ -268,7 +290,8 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     // A cube's seams are no borders.
     if (!inside && light.meta.z > 1u) inside = findMap(light, x.position + s / mm, map, at);
     vec2 place = placeInMap(parallel, at);
-    uvec4 bits = inside ? entryAt(map, place) : kNoEntry;
+    int level = inside ? levelOf(rings, light, map, x.position) : 0;
+    uvec4 bits = inside ? entryAt(map, place, level) : kNoEntry;
     float from = inner;
     spread = gatherSpread(lengths, float(i + 1u) * perSample);
     inner = i + 1u == samples ? kLastRing : gatherSquaredRadius(rings.t, spread);
@@ -278,9 +301,9 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     vec3 toLight = parallel ? lightRay * mm : (light.position.xyz - x.position) * mm - s;
     float ahead = distanceAhead(parallel, entry.depth, at.z);
     // The entry point's plane goes on to the sample's own ray, if the plane faces the light: a shown normal may turn away.
-    vec2 off = floor(place) + 0.5 - place;
+    vec2 off = (vec2(ivec2(place) >> level) + 0.5) * float(1 << level) - place; // in entry points of level 0
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
-    float towards = dot(entry.normal, toLight), most = 2.0 * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
+    float towards = dot(entry.normal, toLight), most = 2.0 / float(1 << level) * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
     if (towards > 0.0) ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
     vec3 to = -(s + ahead * toLight);
     // The ring counts as if all of it lay in the lit point's plane across the axis.

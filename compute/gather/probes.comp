@@ -10,6 +10,8 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform uimage2D probesImage;
 
+const uint kAdds = 1u << 31; // of pass.value.z
+
 // Finds the first pixel of the cell with a solid's surface: all of the place but its normal. Loads of a pixel are at once, so that
 // their latencies overlap: the first pixel is the one, as a rule.
 bool findSurface(ivec2 cell, int side, out ProbePlace place) {
@@ -40,7 +42,7 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
     LightConstants light = lights[i];
     added += light.radiance.rgb * gatherLight(m, light, x, pattern, body);
   }
-  if (pass.value.z != 0u) added += addedOf(imageLoad(probesImage, cell));
+  if ((pass.value.z & kAdds) != 0u) added += addedOf(imageLoad(probesImage, cell));
   return withAdded(bits, added);
 }
 

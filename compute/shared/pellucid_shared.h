@@ -22,6 +22,7 @@
 #define PELLUCID_DIFFUSE_COLUMNS 32 // pixels that a group diffuses
 #define PELLUCID_DIFFUSE_ROWS 16
 #define PELLUCID_ENTRY_POINTS_GROUP 16
+#define PELLUCID_ENTRY_LEVELS 4
 #define PELLUCID_PROBES_GROUP 8   // cells of the gather
 #define PELLUCID_FILTER_GROUP 16  // cells of the gather
 
@@ -240,7 +241,8 @@ struct KernelConstants {
 #define PELLUCID_LISTS 7
 #define PELLUCID_BLOCK_WORDS 3    // see compute/frame/blocks.glsl
 #define PELLUCID_BLOCK_WORDS_SHIFT 10 // log2 of the columns of their image
-#define PELLUCID_ENTRY_GROUP_WORDS 128 // a bit for each of a map's groups of entry points, at most 64 x 64
+// Bits of a map's groups of entry points: 64 rows of 64 of level 0, and half as many rows of each coarser level.
+#define PELLUCID_ENTRY_GROUP_WORDS 240
 
 // Blocks of an image that goes by lists, at most. Counters of two blocks have a word, see compute/diffusion/list_blocks.glsl.
 #define PELLUCID_LISTED_BLOCKS 16384
@@ -254,7 +256,7 @@ struct ListCommand {
 // a frame all counts and bits are 0, but those of `ran`.
 struct BlockLists {
   ListCommand commands[PELLUCID_LISTS];
-  uvec4 maps; // x: shadow maps that are gathered from
+  uvec4 maps; // x: shadow maps that are gathered from; y: pixels a side of a cell
   vec4 reach; // x: how far from a surface probes look for entry points, scene units
 };
 
@@ -265,7 +267,8 @@ struct BlockLists {
 // coarse levels: columns of groups, coarsest level
 // upsample: coarsest level
 // diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
-// probes: pixels a side of a cell, lights, 1 to add to what is there, samples
+// entry points: unused, columns and, from bit 16 on, rows of entry points of level 0
+// probes: pixels a side of a cell, lights, columns and rows of entry points of level 0 and, in bit 31, 1 to add to what is there, samples
 // filter probes: pixels a side of a cell
 struct PassConstants {
   uvec4 value;

@@ -329,7 +329,7 @@ void putLights(const FrameFacts& f, void* mapped) {
         if (!f.isGathered(l)) continue;
         const EntryExtent extent = entryExtent(f, l, k);
         const EntryConstants entry = entryConstants(s, l, constants, f.viewFromWorld, extent, row, i);
-        row += entryGroups(extent.height);
+        row += wholeGroups(extent.height);
         put(mapped, layout.gatherMaps + group.gatherMapBytes + shadow * sizeof entry.gather, entry.gather);
         put(mapped, layout.entryMaps + group.entryMapBytes + shadow * sizeof entry.map, entry.map);
       }
@@ -340,7 +340,7 @@ void putLights(const FrameFacts& f, void* mapped) {
 // The lists are empty, and their commands have the groups of the plan's dispatches. `reach`: of probes, mm.
 shared::BlockLists blockLists(const FrameFacts& f, const PellucidPlan& plan, float reach) {
   shared::BlockLists c{};
-  c.maps.x = f.blocks.maps;
+  c.maps = {f.blocks.maps, f.gatherSpacing, 0, 0};
   c.reach.x = reach / (1000 * f.frame.metersPerUnit);
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];

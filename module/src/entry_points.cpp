@@ -38,7 +38,7 @@ EntryExtent entryExtent(const Setup& setup, const PellucidLight& light, uint32_t
     for (const PellucidShadowMap* m = maps; m < end; ++m) {
       if (parts(m->extent[0], side) > kEntryColumns || parts(m->extent[1], side) > kEntryColumns)
         return false;
-      rows += entryGroups(parts(m->extent[1], side));
+      rows += wholeGroups(parts(m->extent[1], side));
     }
     return rows <= kEntryRows;
   };

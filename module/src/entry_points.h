@@ -19,14 +19,27 @@ constexpr uint32_t kEntryColumns = 1024, kEntryRows = 4096;
 // and bodies have details whatever their material.
 constexpr uint32_t kLeastEntries = 512;
 
-// Whole groups of the pass that makes them.
-constexpr uint32_t entryGroups(uint32_t entries) {
+// Up to whole groups of the pass that makes them.
+constexpr uint32_t wholeGroups(uint32_t entries) {
   return parts(entries, PELLUCID_ENTRY_POINTS_GROUP) * PELLUCID_ENTRY_POINTS_GROUP;
 }
+
+// Columns with the coarser levels beside them, of compute/gather/entry_level.glsl.
+constexpr uint32_t withCoarserEntries(uint32_t columns) { return columns + columns / 2; }
 
 struct EntryExtent {
   uint32_t width, height;
   uint32_t side;  // texels of the map that an entry point stands for, a side
+
+  // Groups of the pass that makes them, of all levels.
+  constexpr uint32_t groups() const {
+    uint32_t sum = 0;
+    for (uint32_t level = 0; level < PELLUCID_ENTRY_LEVELS; ++level) {
+      const uint32_t along = PELLUCID_ENTRY_POINTS_GROUP << level;
+      sum += parts(width, along) * parts(height, along);
+    }
+    return sum;
+  }
 };
 
 // Extent of one of the light's maps: a power of two of texels a side, so that all of them fit. Orthographic

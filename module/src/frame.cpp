@@ -10,9 +10,10 @@ namespace {
 
 // ---- Blocks
 
-// Groups of entry points along a side of a map: a bit for each.
+// Groups of entry points along a side of a map: a bit for each. Rows of coarser levels have as many bits.
 constexpr uint32_t kEntryGroups = kEntryColumns / PELLUCID_ENTRY_POINTS_GROUP;
-static_assert(kEntryGroups * kEntryGroups <= 32 * PELLUCID_ENTRY_GROUP_WORDS);
+constexpr uint32_t kEntryGroupRows = 2 * kEntryGroups - (2 * kEntryGroups >> PELLUCID_ENTRY_LEVELS);
+static_assert(kEntryGroups * kEntryGroupRows <= 32 * PELLUCID_ENTRY_GROUP_WORDS);
 
 // Blocks that pixels [first, first + size) touch. Shifts round down, as the border begins below 0.
 uint32_t blocksAlong(uint32_t first, uint32_t size, int border) {
@@ -28,8 +29,7 @@ Blocks::Blocks(const Lights& lights, const Rect& rect)
       rows(blocksAlong(rect.y, rect.height, PELLUCID_BLOCK_BORDER)),
       touched(blocksAlong(rect.x, rect.width, 0) * blocksAlong(rect.y, rect.height, 0)),
       maps(lights.gathered > 0 ? lights.list().front().shadowCount : 0),
-      entryGroups(lights.entryColumns * lights.entryRows /
-                  (PELLUCID_ENTRY_POINTS_GROUP * PELLUCID_ENTRY_POINTS_GROUP)) {}
+      entryGroups(lights.entryGroups) {}
 
 uint32_t Blocks::listWords() const {
   return static_cast<uint32_t>(pellucid::listWords(std::min<uint32_t>(count(), PELLUCID_LISTED_BLOCKS), maps));

@@ -57,10 +57,11 @@ bool LightGroup::addLight(const Setup& setup, const PellucidLight& light) {
   if (isGathered) {
     for (uint32_t i = 0; i < light.shadowMapCount; ++i) {
       const EntryExtent extent = entryExtent(setup, light, i);
-      grown.entryColumns = std::max(grown.entryColumns, entryGroups(extent.width));
-      grown.entryRows += entryGroups(extent.height);
+      grown.entryColumns = std::max(grown.entryColumns, wholeGroups(extent.width));
+      grown.entryRows += wholeGroups(extent.height);
       grown.entryWidth = std::max(grown.entryWidth, extent.width);
       grown.entryHeight = std::max(grown.entryHeight, extent.height);
+      grown.entryGroups += extent.groups();
     }
     if (grown.entryRows > kEntryRows) return false;
     ++grown.gathered;
@@ -145,7 +146,7 @@ Lights::Lights(const Setup& setup, Findings& out) {
 
 void Lights::group(const Setup& setup, bool withBeside) {
   beside = withBeside;
-  count = gathered = entryColumns = entryRows = 0;
+  count = gathered = entryColumns = entryRows = entryGroups = 0;
   LightGroup current;
   current.beside = beside;
   current.shapes = setup.shapes;
@@ -156,6 +157,7 @@ void Lights::group(const Setup& setup, bool withBeside) {
     if (current.hasProbes()) ++gathered;
     entryColumns = std::max(entryColumns, current.entryColumns);
     entryRows = std::max(entryRows, current.entryRows);
+    entryGroups = std::max(entryGroups, current.entryGroups);
   };
   for (uint32_t i = 0; i < std::min(lightCount, kMost); ++i) {
     if (current.addLight(setup, light(setup, i))) continue;

@@ -35,6 +35,7 @@ struct LightGroup {
   bool shapes = false;                       // its probes say how much light curved surfaces return
   uint32_t entryColumns = 0, entryRows = 0;  // of their maps' entry points
   uint32_t entryWidth = 0, entryHeight = 0;  // the most that one of them has
+  uint32_t entryGroups = 0;                  // workgroups that make those of all levels
   bool beside = true;                        // exit depths and caster materials have slots among the images
   uint32_t imageCount = 0;
   uint32_t mostImages =
@@ -83,7 +84,7 @@ struct Lights {
   // Groups. A curved surface returns the same share under any light: a frame without gathered lights has a
   // first group without lights where surfaces have shapes.
   uint32_t count = 0, gathered = 0;          // gathered: with probes
-  uint32_t entryColumns = 0, entryRows = 0;  // the most of a group
+  uint32_t entryColumns = 0, entryRows = 0, entryGroups = 0;  // the most of a group
   // Dispatches of thin walls' light beside a gather. Without one, the pass of solids' light adds it.
   uint32_t walls = 0;
   // False where exit depths and caster materials need more dispatches than a plan has: then they are left out

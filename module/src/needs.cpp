@@ -1,6 +1,7 @@
 // The images that a frame's dispatches need, of the caller's and besides.
 #include <algorithm>
 
+#include "entry_points.h"
 #include "planner.h"
 
 namespace pellucid {
@@ -21,7 +22,7 @@ Extent texelExtent(const FrameFacts& f, uint32_t index) {
   if (index < pyramid) return {f.pyramid.images[index].width, f.pyramid.images[index].height};
   Extent size{parts(f.lattice.extent.x, f.gatherSpacing), parts(f.lattice.extent.y, f.gatherSpacing)};
   // Filtered probes take the place of entry points.
-  if (index > pyramid) size.fit(f.lights.entryColumns, f.lights.entryRows);
+  if (index > pyramid) size.fit(withCoarserEntries(f.lights.entryColumns), f.lights.entryRows);
   return size;
 }
 

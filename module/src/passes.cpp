@@ -213,15 +213,17 @@ constexpr Pass kEntryPointsPass{
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
+// Columns and, from bit 16 on, rows of a group's entry points of level 0.
+uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
 void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel));
+  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel)).push(1, entriesOf(group));
   if (p.facts.stages.lists)
-    step.groups(columns * rows * group.shadowCount).list(PELLUCID_LIST_ENTRIES);
+    step.groups(group.entryGroups).list(PELLUCID_LIST_ENTRIES);
   else
-    step.groups(columns, rows, group.shadowCount);
+    step.groups(columns, rows, group.shadowCount * PELLUCID_ENTRY_LEVELS);
 }
 
 // ---- Probes -------------------------------------------------------------------------------------------
@@ -252,7 +254,7 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
       .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
       .push(0, p.facts.gatherSpacing)
       .push(1, group.gathered)
-      .push(2, adds)
+      .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
       .push(3, p.facts.gatherSamples);
 }
 
