@@ -4,17 +4,14 @@
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
-#define GROUP_ROWS (PELLUCID_BLOCK_GROUP / 2)
+#define GROUP_ROWS (PELLUCID_BLOCK_GROUP * 3 / 4)
 #include "diffusion/texel.glsl"
 
 const int kInvocations = GROUP_SIDE * GROUP_ROWS;
-// Columns and rows of level 3's part, of the part of level 2 that it needs, and of the part of level 1 that this needs.
-const int kThird = PELLUCID_DOWNSAMPLE_COLUMNS, kThirdRows = PELLUCID_DOWNSAMPLE_ROWS;
-const int kSecond = 2 * kThird + 2, kSecondRows = 2 * kThirdRows + 2, kFirst = 2 * kSecond + 2, kFirstRows = 2 * kSecondRows + 2;
-const int kLoads = (kFirst * kFirstRows + kInvocations - 1) / kInvocations;
-const int kSeconds = (kSecond * kSecondRows + kInvocations - 1) / kInvocations;
+// A group's columns and rows of level 3, of the part of level 2 that it needs, and of the part of level 1 that this needs.
+const ivec2 kThird = ivec2(PELLUCID_DOWNSAMPLE_COLUMNS, PELLUCID_DOWNSAMPLE_ROWS), kSecond = 2 * kThird + 2, kFirst = 2 * kSecond + 2;
 // Level 1 and, once that has been used, level 2: the size limits how many groups run at a time.
-const int kHeld = kFirst * kFirstRows;
+const int kHeld = kFirst.x * kFirst.y;
 #include "diffusion/downsample.glsl"
 
 // True where a texel and all around it are full and lie on one plane. `at`: the texel in colors[] and depths[] of `width`
@@ -33,52 +30,48 @@ bool isFlatAround(uvec4 bits, ivec2 at, int width, uint level, vec2 ray) {
   return isPlane(bits) && (different & kSamePlane) == 0u && most * most < kPlaneOffset / inverseSpread(slope, ray, size);
 }
 
-// The i-th place in the part of level 2: the inner ones first, row by row, which are what the group writes.
-ivec2 placeInSecond(int i) {
-  const int kInner = kSecond - 2, kInnerRows = kSecondRows - 2;
-  if (i < kInner * kInnerRows) return ivec2(i % kInner, i / kInner) + 1;
-  i -= kInner * kInnerRows; // the outermost rows, then the columns between them
-  if (i < 2 * kSecond) return ivec2(i % kSecond, i < kSecond ? 0 : kSecondRows - 1);
-  i -= 2 * kSecond;
-  return ivec2(i < kInnerRows ? 0 : kSecond - 1, i % kInnerRows + 1);
+// Loads level 1's part, whose texel (0, 0) is `corner`.
+void loadFirst(ivec2 corner, bool whole) {
+  const int kRows = kInvocations / kFirst.x, kLoads = (kFirst.y + kRows - 1) / kRows;
+  int column = int(gl_LocalInvocationIndex) % kFirst.x, row = int(gl_LocalInvocationIndex) / kFirst.x;
+  int end = row < kRows ? kFirst.y : 0;
+  // All loads come before the first use, so that their latencies overlap.
+  uvec4 loaded[kLoads];
+  [[unroll]] for (int i = 0; i < kLoads; ++i) {
+    ivec2 at = ivec2(column, row + i * kRows);
+    loaded[i] = at.y < end ? writtenTexel(1u, corner + at, whole) : uvec4(0u);
+  }
+  [[unroll]] for (int i = 0; i < kLoads; ++i) {
+    ivec2 at = ivec2(column, row + i * kRows);
+    if (at.y < end) keepLoaded(slot(at, kFirst.x), loaded[i]);
+  }
 }
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
   uint word = listedBlock(nearList());
-  ivec2 own = (firstPixel(blockOf(word)) >> 3) + ivec2(0, int(gl_WorkGroupID.y) * kThirdRows);
-  ivec2 start = 2 * own - 1, firstStart = 2 * start - 1;
+  ivec2 own = (firstPixel(blockOf(word)) >> 3) + ivec2(0, int(gl_WorkGroupID.y) * kThird.y);
   if (invocation == 0) anySurface = 0u;
   barrier();
-  // All loads come before the first use, so that their latencies overlap.
-  uvec4 loaded[kLoads];
-  [[unroll]] for (int i = 0; i < kLoads; ++i) {
-    int at = invocation + i * kInvocations;
-    loaded[i] = at < kFirst * kFirstRows ? writtenTexel(1u, firstStart + ivec2(at % kFirst, at / kFirst), isWhole(word)) : uvec4(0u);
-  }
-  [[unroll]] for (int i = 0; i < kLoads; ++i) {
-    int at = invocation + i * kInvocations;
-    if (at < kFirst * kFirstRows) keepLoaded(slot(ivec2(at % kFirst, at / kFirst), kFirst), loaded[i]);
-  }
+  loadFirst(4 * own - 3, isWhole(word));
   barrier();
-  bool some = anySurface != 0u; // texels of nothing are nothing
-  uvec4 bits[kSeconds];
-  [[unroll]] for (int i = 0; i < kSeconds; ++i) { // else bits[] would lie in memory
-    int place = invocation + i * kInvocations;
-    ivec2 at = placeInSecond(place);
-    bool makes = some && place < kSecond * kSecondRows && contains(levelRect(2u), start + at);
-    bits[i] = makes ? downsampled(1u, start + at, 2 * at.y * kFirst + at.x, kFirst) : uvec4(0u);
+  [[dont_unroll]] for (int level = 2; level < 4; ++level) {
+    // Level 2 begins with row 1 and ends with row 0, so that the last invocations make level 3 and write nothing of level 2.
+    int place = level == 2 ? invocation + kSecond.x : invocation + kThird.x * kThird.y - kInvocations;
+    ivec2 size = level == 2 ? kSecond : kThird, corner = level == 2 ? 2 * own - 1 : own;
+    ivec2 at = level == 2 ? ivec2(place % kSecond.x, place / kSecond.x % kSecond.y) : ivec2(place % kThird.x, place / kThird.x);
+    ivec2 texel = corner + at;
+    int stride = 2 * size.x + 2;
+    bool inside = level == 2 ? invocation < kSecond.x * kSecond.y : place >= 0, writes = inside && contains(levelRect(uint(level)), texel);
+    bool makes = writes && anySurface != 0u; // texels of nothing are nothing
+    uvec4 bits = makes ? downsampled(uint(level - 1), texel, 2 * at.y * stride + at.x, stride) : uvec4(0u);
+    if (level == 2) {
+      barrier();
+      if (inside) keepTexel(slot(at, kSecond.x), bits);
+      barrier();
+      writes = writes && contains(ivec4(1, 1, kSecond - 1), at);
+      if (writes && isFlatAround(bits, at, kSecond.x, 2u, facingRayAt(pixelOf(2u, texel)))) bits.x |= kFlat;
+    }
+    if (writes) writeLevel(uint(level), texel, bits);
   }
-  barrier();
-  [[unroll]] for (int i = 0; i < kSeconds; ++i)
-    if (invocation + i * kInvocations < kSecond * kSecondRows) keepTexel(slot(placeInSecond(invocation + i * kInvocations), kSecond), bits[i]);
-  barrier();
-  ivec2 at = placeInSecond(invocation); // one of the inner ones
-  if (contains(levelRect(2u), start + at)) {
-    if (isFlatAround(bits[0], at, kSecond, 2u, facingRayAt(pixelOf(2u, start + at)))) bits[0].x |= kFlat;
-    writeLevel(2u, start + at, bits[0]);
-  }
-  at = ivec2(invocation % kThird, invocation / kThird);
-  if (at.y < kThirdRows && contains(levelRect(3u), own + at))
-    writeLevel(3u, own + at, some ? downsampled(2u, own + at, 2 * at.y * kSecond + at.x, kSecond) : uvec4(0u));
 }
