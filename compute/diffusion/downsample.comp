@@ -20,9 +20,8 @@ bool isFlatAround(uvec4 bits, ivec2 at, int width, uint level, vec2 ray) {
   float depth = uintBitsToFloat(bits.z), most = 0.0;
   vec2 size = texelSize(depth, level), slope = unpackHalf2x16(bits.w);
   uint different = 0u;
-  for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) {
-      if (x == 0 && y == 0) continue;
+  [[dont_unroll]] for (int y = -1; y <= 1; ++y)
+    [[unroll]] for (int x = -1; x <= 1; ++x) { // the texel itself changes nothing
       int index = slot(at + ivec2(x, y), width);
       most = max(most, abs(depths[index] - depth - dot(slope, vec2(x, y) * size)));
       different |= colors[index].y ^ bits.y;

@@ -137,7 +137,7 @@ uvec4 downsampled(uint finer, ivec2 texel, int first, int stride) {
   float base = depths[first], off = 0.0, square = 0.0;
   vec2 tilt = vec2(0.0);
   vec3 color = vec3(0.0);
-  for (int i = 0; i < kTaps; i += 4)
+  [[dont_unroll]] for (int i = 0; i < kTaps; i += 4)
     [[unroll]] for (int x = 0; x < 4; ++x) {
       int y = i >> 2, index = tap(first, stride, x, y);
       uvec2 packed = colors[index];
