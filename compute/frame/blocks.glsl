@@ -48,10 +48,10 @@ uvec3 unpackEntryGroup(uint word) { return uvec3(word & 0xFFu, word >> 8 & 0xFFu
 uint cellWord(ivec2 cell) { return kCellWord + uint(cell.y >> 2); }
 uint cellBit(ivec2 cell) { return 1u << (8 * (cell.y & 3) + cell.x); }
 
-// True where the pixel's cell holds material: what earlier passes wrote for the pixel holds something.
+// True where the pixel's cell holds material: what earlier passes wrote for the pixel holds something. `pixel`: of the rect or at most
+// PELLUCID_BLOCK_BORDER from it.
 bool cellHoldsMaterial(ivec2 pixel) {
   ivec2 block = (pixel >> kBlockShift) - firstBlock(), cell = (pixel & (PELLUCID_BLOCK - 1)) >> kCellShift;
-  if (!contains(ivec4(0, 0, frame.blocks.xy), block)) return false;
   return (readWord(blockWord(uint(block.y) * frame.blocks.x + uint(block.x), cellWord(cell))) & cellBit(cell)) != 0u;
 }
 

@@ -20,7 +20,7 @@ bool findSurface(ivec2 cell, int side, out ProbePlace place) {
     place.material = within == pixel ? materialIndex(value) : 0u;
     bool thin = place.material != 0u && hasFlag(PELLUCID_FLAG_THIN_WALLS) && materials[place.material - 1u].meta.z != 0u;
     if (place.material != 0u && place.front > 0.0 && !thin) return true;
-    if (place.index == 0 && !cellHoldsMaterial(side * cell)) return false;
+    if (place.index == 0 && !(contains(cellsOf(frame.rect, side), cell) && cellHoldsMaterial(side * cell))) return false;
   }
   return false;
 }
