@@ -27,7 +27,7 @@ void loadRows(ivec2 corner, int first, int origin) {
   uvec4 loaded[kLoads];
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = ivec2(column, row + i * (kInvocations / kColumns));
-    loaded[i] = at.y < end ? writtenTexel(3u, corner + at, false) : uvec4(0u);
+    loaded[i] = at.y < end ? writtenTexel(3u, corner + at) : uvec4(0u);
   }
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = ivec2(column, row + i * (kInvocations / kColumns));

@@ -38,7 +38,7 @@ void loadFirst(ivec2 corner, bool whole) {
   uvec4 loaded[kLoads];
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = ivec2(column, row + i * kRows);
-    loaded[i] = at.y < end ? writtenTexel(1u, corner + at, whole) : uvec4(0u);
+    loaded[i] = at.y < end ? writtenQuad(corner + at, whole) : uvec4(0u);
   }
   [[unroll]] for (int i = 0; i < kLoads; ++i) {
     ivec2 at = ivec2(column, row + i * kRows);

@@ -73,12 +73,18 @@ ivec2 inAtlas(uint level, ivec2 texel) { return frame.level[level].xy + texel; }
 
 void writeLevel(uint level, ivec2 texel, uvec4 value) { imageStore(levelsDestination, inAtlas(level, texel), value); }
 
-// A texel of the level that pyramidImage holds, nothing where none was written: level 1 is written where cells hold material, and
-// levels 2 and 3 in blocks with material and the blocks beside. `whole`: isWhole of the group's block.
-uvec4 writtenTexel(uint level, ivec2 texel, bool whole) {
+// A texel of level 1, which pyramidImage holds; nothing where none was written, as cells hold no material. `whole`: isWhole of the
+// group's block.
+uvec4 writtenQuad(ivec2 quad, bool whole) {
+  if (!contains(levelRect(1u), quad)) return uvec4(0u);
+  if (!whole && !cellHoldsMaterial(quad << 1)) return uvec4(0u);
+  return texelFetch(pyramidImage, inAtlas(1u, quad), 0);
+}
+
+// A texel of level 2 or 3, which pyramidImage holds; nothing where none was written, as no block beside holds material.
+uvec4 writtenTexel(uint level, ivec2 texel) {
   if (!contains(levelRect(level), texel)) return uvec4(0u);
-  if (level == 1u && !whole && !cellHoldsMaterial(texel << 1)) return uvec4(0u);
-  if ((level == 2u || level == 3u) && !isNearMaterial(texel << level)) return uvec4(0u);
+  if (!isNearMaterial(texel << level)) return uvec4(0u);
   return texelFetch(pyramidImage, inAtlas(level, texel), 0);
 }
 
@@ -143,7 +149,7 @@ vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 quad = (pixel >> 1) + toward * ivec2(i & 1, i >> 1);
     // The pixel's own quad has been written, as the pixel has a material.
-    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenTexel(1u, quad, false));
+    Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenQuad(quad, false));
     float off = front - t.depth - dot(t.slope, (vec2(pixel) - pixelOf(1u, quad)) * size);
     float w = ((i & 1) == 0 ? 0.75 : 0.25) * (i < 2 ? 0.75 : 0.25) * exp2(-off * off * inverseSpread(t.slope, ray, size));
     w = t.area != 0.0 && t.material == material ? w + 1.0e-6 : 0.0;

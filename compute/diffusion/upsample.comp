@@ -10,7 +10,7 @@
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 to 7; pyramidImage has 2 and 3
 
 uvec4 levelTexel(uint level, ivec2 texel) {
-  if (level < 4u) return writtenTexel(level, texel, false);
+  if (level < 4u) return writtenTexel(level, texel);
   return contains(levelRect(level), texel) ? texelFetch(coarserLevelsImage, inAtlas(level, texel), 0) : uvec4(0u);
 }
 

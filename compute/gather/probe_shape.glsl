@@ -16,7 +16,7 @@ struct Beside {
 
 Beside besideAt(ivec2 pixel, Surface x, float reach) {
   ivec2 quad = pixel >> 1;
-  Texel t = unpackTexel(writtenTexel(1u, quad, false));
+  Texel t = unpackTexel(writtenQuad(quad, false));
   vec2 center = pixelOf(1u, quad);
   ViewRay ray = viewRay(frame.camera, center);
   vec3 apart = (ray.origin + t.depth * ray.direction - x.position) * frame.camera.range.w;
