@@ -108,6 +108,7 @@ struct GatherRings {
   vec3 axis;
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
   float entrySide;     // of the map's entry points of the level
+  float perQuad;       // 1 / side of the quad of level 1 at x, facing the camera
   float ahead;         // along the light's ray from x to the lit surface
   float tolerance;     // how far a receiver's own exit may be off
   float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
@@ -132,6 +133,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float facing = max(-dot(x.normal, toLight), 0.0);
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
+  rings.perQuad = 0.5 / max(pixelSize(frame.camera, x.position.z * frame.camera.range.x).x, 1.0e-30);
   rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
@@ -243,19 +245,20 @@ struct Gathered {
 };
 
 // Adds a sample. `to`: from the lit point to x; `near`, `far`: distances of its ring from x; `flux`: per area across the axis.
-void addSample(inout Gathered sum, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
-               float flux, float axisCosine) {
+void addSample(inout Gathered sum, GatherRings rings, Surface x, uint m, vec4 lengths, EntryPoint entry, vec3 to, float near, float far,
+               float flux) {
   float squared = dot(to, to);
-  float opposite = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
-  float through = max(-dot(entry.normal, to), 0.0);
-  float squaredH = through * max(dot(x.normal, to), 0.0) / max(opposite, 1.0e-4);
+  float turned = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
+  // A quad has one normal: what turns less than a quarter within its side is one surface, through which no light comes.
+  float opposite = turned * mix(min(sqrt(squared) * rings.perQuad, 1.0), 1.0, min(2.0 * turned, 1.0));
+  float through = max(-dot(entry.normal, to), 0.0), squaredH = through * max(dot(x.normal, to), 0.0) / max(turned, 1.0e-4);
   float h = sqrt(min(squaredH, squared));
-  float curved = (1.0 - opposite) * min(squaredH / max(squared, 1.0e-12), 1.0);
+  float curved = (1.0 - turned) * min(squaredH / max(squared, 1.0e-12), 1.0);
   vec3 comes = opposite * gatherTransmitted(lengths, slabOf(m, lengths, h), curved, h, near, far);
   sum.through += flux * (entry.hidden + entry.seen) * comes;
   vec3 reflected = gatherReflected(materials[m].gather.profile.rgb, near, far);
   // A grazed texel stands for more than five times its area: the light beyond that lies further away and does not count here.
-  float area = axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
+  float area = rings.axisCosine / max(entry.cosine, kLeastCosine), here = min(entry.cosine / kLeastCosine, 1.0) * flux;
   vec3 alike = (1.0 - opposite) * reflected;
   sum.entering += here * entry.hidden * alike;
   sum.hidden += area * entry.hidden * alike;
@@ -314,7 +317,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float stays = staysInside(rings, light, x, map, entry, to, parallel ? lightRay : normalize(toLight));
     entry.hidden *= stays;
     entry.seen *= stays;
-    addSample(sum, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux, rings.axisCosine);
+    addSample(sum, rings, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux);
   }
   return sum;
 }

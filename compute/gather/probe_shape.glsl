@@ -32,15 +32,16 @@ Beside acrossOf(Beside forward, Beside backward) {
   return Beside(vec4(f * forward.apart.xyz - b * backward.apart.xyz, max(f, b)), f * forward.turn - b * backward.turn);
 }
 
-// Steps in pixels that reach `reach` mm on the surface's tangent plane.
-ivec2 stepsOf(Surface x, ViewRay ray, float front, float reach) {
+// Steps in pixels that reach `reach` mm on the surface's tangent plane, and a quad at least: then that is the reach.
+ivec2 stepsOf(Surface x, ViewRay ray, float front, inout float reach) {
   Camera c = frame.camera;
   vec3 sideX = vec3(c.rayX.zw + front * c.rayX.xy, 0.0), sideY = vec3(c.rayY.zw + front * c.rayY.xy, 0.0);
   float facing = min(dot(x.normal, ray.direction), -0.1); // planes seen edge-on would have no end
   sideX -= ray.direction * (dot(x.normal, sideX) / facing);
   sideY -= ray.direction * (dot(x.normal, sideY) / facing);
   vec2 size = sqrt(vec2(dot(sideX, sideX), dot(sideY, sideY))) * c.range.w;
-  return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(2.0), vec2(1.0e4))); // at least a quad
+  reach = max(reach, 2.0 * max(size.x, size.y));
+  return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(2.0), vec2(1.0e4)));
 }
 
 // Mean curvature of the surface around x, 1/mm, positive where convex; 0 where it does not go on.

@@ -300,6 +300,13 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
   return blocks;
 }
 
+double Gather::quadSide(const Surface& surface) const {
+  const Camera& camera = surfaces_.camera();
+  const double planar = camera.planarDepth(surface.position);
+  const glm::dvec2 pixel = camera.project(surface.position);
+  return 2 * mm_ * glm::distance(camera.position(pixel + glm::dvec2(1, 0), planar), camera.position(pixel, planar));
+}
+
 double Gather::meanCurvature(const Surface& surface, double reach) const {
   const Camera& camera = surfaces_.camera();
   const glm::dvec2 pixel = glm::floor(camera.project(surface.position));
@@ -307,11 +314,13 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   const glm::dvec3& normal = surface.normal;
   // Pixels that `reach` takes on the tangent plane, at least to the next quad; planes seen edge-on would have
   // no end.
-  const auto stepsAlong = [&](glm::dvec2 step) {
+  const auto pixelAlong = [&](glm::dvec2 step) {
     glm::dvec3 side = camera.position(pixel + step, planar) - camera.position(pixel, planar);
     side -= surface.ray * (glm::dot(normal, side) / std::min(glm::dot(normal, surface.ray), -0.1));
-    return std::max(2.0, std::floor(reach / (mm_ * glm::length(side)) + 0.5));
+    return mm_ * glm::length(side);
   };
+  reach = std::max(reach, 2 * std::max(pixelAlong({1, 0}), pixelAlong({0, 1})));
+  const auto stepsAlong = [&](glm::dvec2 step) { return std::max(2.0, std::floor(reach / pixelAlong(step) + 0.5)); };
   struct Beside {
     glm::dvec3 apart{0}, turn{0};  // mm; of the normal
     double weight = 0;             // 1 where the surface goes on
@@ -460,13 +469,15 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (y.material != 0 && y.material != exit.material + 1) continue;
       const glm::dvec3 to = exit.position - y.position;
       GatherPath path = gatherPath(to, exit.normal, y.normal);
+      // A quad has one normal: what turns little within its side is one surface, through which no light comes.
+      const double turned = 1 - path.facing,
+                   across = turned * std::lerp(std::min(path.distance / exit.quad, 1.0), 1.0, std::min(2 * turned, 1.0));
       const double side = std::sqrt(y.area);
       // Half a texel: nearer than that the sum is no integral.
       const bool own = path.distance < 0.6 * side;
       path.distance = std::max(path.distance, 0.5 * side);
       if (path.distance > radius) continue;
-      const double part = inside(y, exit, place), opposite = part * (1 - path.facing),
-                   alike = part * path.facing;
+      const double part = inside(y, exit, place), opposite = part * across, alike = part * (1 - across);
       if (opposite > 0) sums.transmitted += opposite * kernel.transmitted(path.distance, path.depth) * y.flux;
       if (!(alike > 0) && !(y.seen && opposite > 0)) continue;
       // The texel of the exit itself has all that lies within a disc of its area.
@@ -489,7 +500,7 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = *kernels_[material];
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
   const Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)),
-                  glm::dmat3(worldFromView) * surface.normal, material};
+                  glm::dmat3(worldFromView) * surface.normal, material, quadSide(surface)};
   const BodyFactors body = bodyAt(surface, material);
   const glm::dvec3 rho = kernel.reflectance();
   Gathered result;

@@ -56,6 +56,7 @@ private:
     glm::dvec3 position;  // mm
     glm::dvec3 normal;
     std::size_t material = 0;
+    double quad = 0;  // side of two pixels there, facing the camera, mm
   };
   // An exit among a light's rays, as its maps say.
   struct Place {
@@ -79,6 +80,8 @@ private:
   double pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const;
   // Around a surface, 1/mm, positive where convex: from the quads that lie `reach` mm to both sides in the
   // image. 0 where it does not go on.
+  // Side of two pixels at the surface, facing the camera, mm.
+  double quadSide(const Surface& surface) const;
   double meanCurvature(const Surface& surface, double reach) const;
   // Thickness of the body, mm: a slab's at any angle, a ball's diameter. INFINITY: not known.
   double thickness(const Surface& surface) const;
