@@ -7,6 +7,8 @@
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #include "diffusion/profile.glsl"
 
+const int kInvocations = GROUP_SIDE * GROUP_ROWS;
+
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 to 7; pyramidImage has 2 and 3
 
 uvec4 levelTexel(uint level, ivec2 texel) {
@@ -26,6 +28,7 @@ struct Window {
 // A block has 8 x 8 texels of level 3, 4 x 4 of level 4 and so on, and its windows one more on each side.
 const int kFirst4 = 10 * 10, kFirst5 = kFirst4 + 6 * 6, kFirst6 = kFirst5 + 4 * 4, kFirst7 = kFirst6 + 3 * 3, kUpsampled = kFirst7 + 3 * 3;
 shared uvec4 upsampled[kUpsampled];
+shared uvec4 fineTexels[kInvocations]; // of level 2, each of the invocation that writes and reads it: registers limit how many groups run
 
 // `k`: the block. A texel takes the two nearest coarser ones along each axis.
 Window windowOf(uint level, ivec2 k) {
@@ -133,7 +136,7 @@ Level withCoarser(Own own, uint level, ivec2 texel, Window window) {
   vec2 slope = own.texel.slope, ray = facingRayAt(pixelOf(level, texel));
   TangentPlane plane = tangentPlane(slope, ray, inverseSpread(slope, ray, size));
   vec3 coarser = vec3(0.0), found = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = nearest + toward * ivec2(i & 1, i >> 1);
     uvec4 theirs = upsampled[indexOf(window, at)];
     vec2 x = (vec2(at) + 0.5 - 0.5 * (vec2(texel) + 0.5)) * size;
@@ -159,15 +162,12 @@ void writeUpsampled(ivec2 texel, uvec4 color, uvec4 shares) {
   imageStore(levelsDestination, sharesPlace(texel), shares);
 }
 
-// `bits`: the texel of the pyramid; `k`: the block.
-void upsampleFine(ivec2 texel, ivec2 k, uvec4 bits) {
-  if (!contains(levelRect(2u), texel)) return;
+// `bits`: the texel of the pyramid.
+void writeFine(ivec2 texel, uvec4 bits, Own own, Level r) {
   if (!hasSurface(bits)) {
     writeUpsampled(texel, uvec4(0u, bits.y & 0xFFFF0000u, 0u, 0u), uvec4(0u));
     return;
   }
-  Own own = ownPart(2u, texel, bits);
-  Level r = withCoarser(own, 2u, texel, windowOf(3u, k));
   uint upper = bits.y >> 16 & ~(kPlane >> 16);
   PixelShares share = pixelShares(own.texel.material - 1u, own.foreshortening);
   if ((bits.x & kFlat) != 0u) {
@@ -187,14 +187,24 @@ void main() {
   ivec2 texel = window.corner + ivec2(place % window.columns, place / window.columns);
   bool inside = level <= coarsest && invocation < kUpsampled;
   // All loads come before the first use.
-  uvec4 bits = inside ? levelTexel(level, texel) : uvec4(0u), fineBits = levelTexel(2u, fine);
-  Own own = ownPart(level, texel, bits);
-  for (uint l = coarsest; l > 2u; --l) {
-    if (level == l && invocation < kUpsampled) {
-      Level r = l == coarsest ? alone(own) : withCoarser(own, level, texel, windowOf(level + 1u, k));
-      upsampled[invocation] = own.texel.area > 0.0 ? packLevel(r, bits) : uvec4(0u);
+  uvec4 bits = inside ? levelTexel(level, texel) : uvec4(0u);
+  fineTexels[invocation] = levelTexel(2u, fine);
+  Own own;
+  [[dont_unroll]] for (uint l = coarsest; l > 1u; --l) {
+    if (l == 2u) {
+      level = 2u;
+      texel = fine;
+      bits = fineTexels[invocation];
+      inside = contains(levelRect(2u), fine);
+    }
+    if (l == coarsest || l == 2u) own = ownPart(level, texel, bits); // of all coarser levels at once
+    if (level == l && inside) {
+      Level r = l == coarsest ? alone(own) : withCoarser(own, l, texel, windowOf(l + 1u, k));
+      if (l == 2u)
+        writeFine(texel, bits, own, r);
+      else
+        upsampled[invocation] = hasSurface(bits) ? packLevel(r, bits) : uvec4(0u);
     }
     barrier();
   }
-  upsampleFine(fine, k, fineBits);
 }
