@@ -13,7 +13,7 @@ const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, a
 
 shared uint cells[2];          // bits of rows 0 to 3 and 4 to 7
 shared uint nearest, farthest; // bits of planar distances, which are above 0
-// Surfaces of the block's quads and of those around it, as keepSurface has them.
+// Surfaces of the block's quads and of those around it, as keepSurface has them. Before, colors[].x has the materials of a quad's pixels.
 shared float depths[kRow * kRow];
 shared uvec2 colors[kRow * kRow];
 
@@ -233,19 +233,16 @@ void main() {
     nearest = floatBitsToUint(kNoDepth);
     farthest = 0u;
   }
-  // All loads come before the first use, so that their latencies overlap.
-  uint materials[kQuads * kQuads];
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    materials[i] = 0u;
-    [[unroll]] for (int k = 0; k < 4; ++k) {
-      ivec2 at = inImage(2 * first) + 2 * quadInBlock(i) + ivec2(k & 1, k >> 1);
-      materials[i] |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
-    }
-  }
   barrier();
-  [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
-    ivec2 cell = cellOfQuad(quadInBlock(i));
-    if (materials[i] != 0u && !cellHolds(cell)) atomicOr(cells[cell.y >> 2], cellBit(cell));
+  [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    ivec2 quad = quadInBlock(i), cell = cellOfQuad(quad);
+    uint materials = 0u;
+    [[unroll]] for (int k = 0; k < 4; ++k) {
+      ivec2 at = inImage(2 * first) + 2 * quad + ivec2(k & 1, k >> 1);
+      materials |= (contains(rect, at) ? materialAt(at) : 0u) << 8 * k;
+    }
+    colors[placeOf(quad)].x = materials;
+    if (materials != 0u && !cellHolds(cell)) atomicOr(cells[cell.y >> 2], cellBit(cell));
   }
   barrier();
   bool some = (cells[0] | cells[1]) != 0u;
@@ -253,9 +250,9 @@ void main() {
   if (goesByLists() && invocation < 9) countBlock(block, invocation, uvec2(cells[0], cells[1]));
   if (some) {
     if (invocation < kAround) readAround(first, quadAround(invocation), rect);
-    [[unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
+    [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
       ivec2 quad = quadInBlock(i);
-      readQuad(first, quad, materials[i], cellHolds(cellOfQuad(quad)));
+      readQuad(first, quad, colors[placeOf(quad)].x, cellHolds(cellOfQuad(quad)));
     }
   }
   barrier();
