@@ -316,7 +316,7 @@ private:
 void refuseScene(const Command& command) {
   for (const char* name : {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior",
                            "--shadow-size", "--shadow-depth", "--jitter", "--depth", "--back", "--point-maps",
-                           "--infinite-far", "--view-normals"})
+                           "--infinite-far"})
     if (command.isGiven(name))
       throw UsageError(std::string(name) +
                        ": --like takes camera, size, lights and materials of the capture");
