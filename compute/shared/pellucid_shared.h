@@ -245,7 +245,7 @@ struct KernelConstants {
 #define PELLUCID_ENTRY_GROUP_WORDS 240
 
 // Blocks of an image that goes by lists, at most. Counters of two blocks have a word, see compute/diffusion/list_blocks.glsl.
-#define PELLUCID_LISTED_BLOCKS 16384
+#define PELLUCID_LISTED_BLOCKS 32768
 
 struct ListCommand {
   uvec4 groups; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many

@@ -16,7 +16,7 @@ constexpr int kBlock = PELLUCID_STATISTICS_BLOCK;
 
 // Words of a block, as compute/frame/blocks.glsl has them. The first two have bits of cells with material.
 // The last one is 1 if the block or a block beside it has material.
-constexpr std::size_t kCellWords[] = {0, 1}, kNearWord = 4;
+constexpr std::size_t kCellWords[] = {0, 1}, kNearWord = 2;
 
 BlockClass classOf(std::span<const std::uint32_t> words) {
   if (words[kCellWords[0]] != 0 || words[kCellWords[1]] != 0) return BlockClass::Material;

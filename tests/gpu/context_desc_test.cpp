@@ -55,7 +55,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
     };
   };
   const Context diffusion(device(), change, Compile::AtCreation);
-  EXPECT_EQ(lent.count, 6u) << "base level, list blocks, downsample, coarse levels, upsample, diffuse";
+  EXPECT_EQ(lent.count, 5u) << "base level, downsample, coarse levels, upsample, diffuse";
   EXPECT_EQ(lent.jobs.size(), lent.count);
 
   ReplaySettings s;

@@ -137,17 +137,15 @@ TEST(Plan, IrradianceThatIsTheOutputIsLeftAlone) {
 
 // The default frame, as docs/how-it-works.md lists it.
 TEST(Plan, GathersBesideTheDiffusion) {
-  const Names all = {"base level", "list blocks", "downsample",    "entry points", "coarse levels",
-                     "probes",     "upsample",    "filter probes", "diffuse"};
+  const Names all = {"base level", "downsample", "entry points",  "coarse levels",
+                     "probes",     "upsample",   "filter probes", "diffuse"};
   for (const auto indirect : {1, 0}) {
     Gathered f;
     f.frame.options.indirectDispatches = indirect;
     const PellucidPlan plan = f.plan();
-    Names expected = all, found = names(plan);
-    if (indirect == 0) expected.erase(expected.begin() + 1);
-    EXPECT_EQ(std::multiset<std::string>(found.begin(), found.end()),
-              std::multiset<std::string>(expected.begin(), expected.end()));
-    EXPECT_EQ(plan.barrierCount, indirect == 0 ? 4u : 5u);
+    const Names found = names(plan);
+    EXPECT_EQ(std::multiset<std::string>(found.begin(), found.end()), std::multiset<std::string>(all.begin(), all.end()));
+    EXPECT_EQ(plan.barrierCount, 4u);
     // Steps between barriers: which passes run side by side.
     std::map<std::string, std::set<uint32_t>> steps;
     uint32_t step = 0;
@@ -306,7 +304,7 @@ void expectRules(const Frame& f) {
       uses.insert(b.resource);
       // Words of the blocks are read by all passes but those two.
       const bool reads =
-          b.binding == PELLUCID_BINDING_BLOCKS && name != "base level" && name != "list blocks";
+          b.binding == PELLUCID_BINDING_BLOCKS && name != "base level";
       const bool write = b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && !reads;
       if (write) writes.insert(b.resource);
       if (b.resource < PELLUCID_RESOURCE_TRANSIENT0 || b.resource >= PELLUCID_RESOURCE_HISTORY) continue;
@@ -377,7 +375,7 @@ TEST(Plan, LargeImagesKeepTheirLists) {
       const PellucidPlan plan = f.plan();
       uint32_t listed = 0;
       for (uint32_t i = 0; i < plan.dispatchCount; ++i) listed += plan.dispatches[i].indirect;
-      EXPECT_EQ(listed + 2, plan.dispatchCount) << "all but those that find blocks and list them";
+      EXPECT_EQ(listed + 1, plan.dispatchCount) << "all but the one that lists blocks";
     }
 }
 
@@ -662,8 +660,8 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
           const VkDeviceSize bound = pellucidGetConstantsSize(1, lights, lights * mapsOfALight);
           EXPECT_EQ(bound % 256, 0u);
           EXPECT_LE(plan.constantsSize, bound) << lights << " lights of " << mapsOfALight << " maps";
-          // A gather takes 512 bytes a map besides, which frames without one lack.
-          EXPECT_LT(bound, 4 * plan.constantsSize) << lights << " lights of " << mapsOfALight;
+          // A gather takes 512 bytes a map besides, which frames without one lack; large images have counters of 32,768 blocks.
+          EXPECT_LT(bound, 4 * plan.constantsSize + 65536) << lights << " lights of " << mapsOfALight;
         }
 }
 
