@@ -35,10 +35,10 @@ const int kAround = 4 * kSide + 4;
 const uint kAllPixels = 15u; // bits of a quad's pixels, rows first
 
 struct QuadSurface {
-  float depth;   // mean; without a surface minus that of what the quad shows, kNoDepth if nothing
+  float depth;   // mean; -kNoDepth: there is none
   uint material; // index + 1; without a surface that of a pixel without depth, or 0
   uint pixels;
-  bool ends; // a pixel shows nothing, or what lies behind
+  bool ends; // a pixel has no material, or what it shows lies behind
 };
 
 // Largest change of depth from pixel to pixel on one surface, over a pixel's side: 83 degrees from facing the camera.
@@ -47,23 +47,23 @@ const float kSteepest = 8.0;
 // `materials`: of the quad's pixels, a byte each.
 QuadSurface surfaceOf(float depth[4], uint materials) {
   QuadSurface s = QuadSurface(0.0, 0u, 0u, false);
-  float front = kNoDepth, shown = kNoDepth, sum = 0.0;
+  float front = kNoDepth, sum = 0.0;
   uint any = 0u;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     uint material = materials >> 8 * i & 255u;
     any = max(any, material);
-    if (depth[i] > 0.0) shown = min(shown, depth[i]);
     if (material == 0u || !(depth[i] > 0.0) || depth[i] >= front) continue;
     front = depth[i];
     s.material = material;
   }
-  if (s.material == 0u) return QuadSurface(-shown, any, 0u, false);
+  if (s.material == 0u) return QuadSurface(-kNoDepth, any, 0u, false);
   vec2 sides = squaredPixelSize(frame.camera, front);
   float reach = kSteepest * sqrt(min(sides.x, sides.y));
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    bool behind = !(depth[i] > 0.0) || depth[i] - front > reach;
+    uint material = materials >> 8 * i & 255u;
+    bool behind = material == 0u || !(depth[i] > 0.0) || depth[i] - front > reach;
     s.ends = s.ends || behind;
-    if (behind || (materials >> 8 * i & 255u) != s.material) continue;
+    if (behind || material != s.material) continue;
     sum += depth[i];
     s.pixels |= 1u << i;
   }
@@ -133,7 +133,7 @@ const float kNearPlane = 0.1;
 // side from the silhouette, is the root of 2 times that to the quad before, and its mean over the quad the root of 2 times more.
 const float kLimb = 1.41421356;
 
-// kLimb where the surface ends in the quad or in the direction in which its depth grows, and what lies there is not nearer.
+// kLimb where the surface ends in the quad or in the direction in which its depth grows, and no material lies nearer there.
 float limbOf(int place, int stride, float own, float perTexel, float reach) {
   bool ends = (surfaceAt(place) & kEnds) != 0u || abs(depths[perTexel > 0.0 ? place + stride : place - stride]) - own > reach;
   return ends ? kLimb : 1.0;
@@ -179,15 +179,15 @@ uvec4 texelOf(ivec2 first, ivec2 quad) {
 
 // ---- Pixels
 
-// Loads a quad of the block, keeps its surface and, where its cell has material, copies its pixels.
-void readQuad(ivec2 first, ivec2 quad, uint materials, bool holdsMaterial) {
+// Loads a quad of a cell with material, keeps its surface and copies its pixels.
+void readQuad(ivec2 first, ivec2 quad, uint materials) {
   float depth[4];
   vec4 source[4];
   // All loads come before the first use, so that their latencies overlap.
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 at = inImage(withinRect(2 * (first + quad) + ivec2(i & 1, i >> 1)));
     depth[i] = frontDistance(at);
-    source[i] = holdsMaterial ? texelFetch(sourceImage, at, 0) : vec4(0.0);
+    source[i] = texelFetch(sourceImage, at, 0);
   }
   QuadSurface s = surfaceOf(depth, materials);
   float least = kNoDepth, most = 0.0;
@@ -252,7 +252,10 @@ void main() {
     if (invocation < kAround) readAround(first, quadAround(invocation), rect);
     [[dont_unroll]] for (int i = 0; i < kQuads * kQuads; ++i) {
       ivec2 quad = quadInBlock(i);
-      readQuad(first, quad, colors[placeOf(quad)].x, cellHolds(cellOfQuad(quad)));
+      if (cellHolds(cellOfQuad(quad)))
+        readQuad(first, quad, colors[placeOf(quad)].x);
+      else
+        keepSurface(quad, QuadSurface(-kNoDepth, 0u, 0u, false), vec3(0.0));
     }
   }
   barrier();

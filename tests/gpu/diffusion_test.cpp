@@ -148,8 +148,8 @@ TEST_F(Diffusion, SurfacesCountByTheirArea) {
         light(c, x, y, 1);
         continue;
       }
-      const int fold = x % 16;
-      const double distance = fold < 8 ? fold + 0.5 : 15.5 - fold;
+      const int fold = x % 32;
+      const double distance = fold < 16 ? fold + 0.5 : 31.5 - fold;
       c.frontDepth.image.at(x, y)[0] += static_cast<float>(std::sqrt(3) * distance * pixelOf(c));
     }
   const Image out = replay(c, gaussians({1e4}, pixelOf(c)), diffusionOnly());

@@ -172,8 +172,8 @@ TEST_F(FlatOccluder, ABodyIsNotBeyondItsOwnExit) {
         all += double(open.data[i]);
       }
       EXPECT_GT(all, 1) << name;
-      // A torus' far side lies behind air for some rays.
-      EXPECT_LE(lost, (std::string(name) == "sphere" ? 1e-3 : 0.2) * all) << name << ", light " << light;
+      // A torus' far side lies behind air for some rays. Normals of neighboring depths are off by degrees at 48 pixels.
+      EXPECT_LE(lost, (std::string(name) == "sphere" ? 1e-2 : 0.2) * all) << name << ", light " << light;
     }
 }
 
