@@ -14,7 +14,7 @@ const ivec2 kThird = ((kOwn + 2) << 4) - 2, kFourth = ((kOwn + 2) << 3) - 2;
 // Level 4 is made in parts of so many rows, since level 3's window does not fit. A part's input lies behind the parts before it.
 const int kPartRows = kInvocations / (kFourth.x + 2), kParts = (kFourth.y + kPartRows - 1) / kPartRows;
 const int kPartTexels = kPartRows * kFourth.x, kInputRows = 2 * kPartRows + 2;
-const int kHeld = (kParts - 2) * kPartTexels + kInputRows * kThird.x; // the last part has fewer rows
+#define HELD_TEXELS ((kParts - 2) * kPartTexels + kInputRows * kThird.x) // the last part has fewer rows
 #include "diffusion/downsample.glsl"
 
 // Loads rows [first, first + kInputRows) of level 3's window, whose texel (0, 0) is `corner`, into slots that are row by row from

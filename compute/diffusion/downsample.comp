@@ -11,7 +11,7 @@ const int kInvocations = GROUP_SIDE * GROUP_ROWS;
 // A group's columns and rows of level 3, of the part of level 2 that it needs, and of the part of level 1 that this needs.
 const ivec2 kThird = ivec2(PELLUCID_DOWNSAMPLE_COLUMNS, PELLUCID_DOWNSAMPLE_ROWS), kSecond = 2 * kThird + 2, kFirst = 2 * kSecond + 2;
 // Level 1 and, once that has been used, level 2: the size limits how many groups run at a time.
-const int kHeld = kFirst.x * kFirst.y;
+#define HELD_TEXELS (kFirst.x * kFirst.y)
 #include "diffusion/downsample.glsl"
 
 // True where a texel and all around it are full and lie on one plane. `at`: the texel in colors[] and depths[] of `width`

@@ -1,12 +1,15 @@
 // Texels of a level from texels of the finer one in shared memory. A texel takes the nearest of the surfaces under it and averages
-// what lies on that. A pass defines kHeld, the texels that it holds at a time, before it includes this file.
+// what lies on that. A pass defines HELD_TEXELS, the texels that it holds at a time, before it includes this file.
 #ifndef PELLUCID_DOWNSAMPLE_GLSL
 #define PELLUCID_DOWNSAMPLE_GLSL
 
 #include "diffusion/texel.glsl"
 
-shared uvec2 colors[kHeld]; // and area, material and plane, as packed
-shared float depths[kHeld];
+#ifndef HELD_TEXELS
+#define HELD_TEXELS 1
+#endif
+shared uvec2 colors[HELD_TEXELS]; // and area, material and plane, as packed
+shared float depths[HELD_TEXELS];
 shared uint anySurface; // in what was loaded
 
 const int kTaps = 16; // texels under a texel

@@ -124,11 +124,10 @@ void listGroupsInRow(uint map, uint level, uint row, int first, int last) {
 // Lists the groups that a block needs in a row of each level of a map.
 void listEntryGroups(uint map, uint block, int row, float nearest, float farthest) {
   EntriesInReach reach = entriesInReach(map, block, nearest, farthest);
-  vec4 entries = reach.entries;
   ivec2 last = maps[map].place.zw - 1;
-  if (any(isnan(entries))) entries = vec4(vec2(0.0), vec2(last));
+  if (any(isnan(reach.entries))) reach = EntriesInReach(vec4(vec2(0.0), vec2(last)), ivec2(0, PELLUCID_ENTRY_LEVELS - 1));
   // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
-  ivec4 within = ivec4(floor(clamp(entries, vec4(-1.0), vec4(last + 1, last + 1))));
+  ivec4 within = ivec4(floor(clamp(reach.entries, vec4(-1.0), vec4(last + 1, last + 1))));
   if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;
   within = ivec4(max(within.xy, ivec2(0)), min(within.zw, last));
   for (int level = reach.levels.x; level <= reach.levels.y; ++level) {

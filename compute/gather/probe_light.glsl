@@ -317,6 +317,10 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     float stays = staysInside(rings, light, x, map, entry, to, parallel ? lightRay : normalize(toLight));
     entry.hidden *= stays;
     entry.seen *= stays;
+    // The camera sees x, and the map does not tell x from what lies closer than an entry point's side on the same face.
+    float shown = dot(x.normal, entry.normal) > 0.0 ? max(1.0 - length(to) / max(rings.entrySide, 1.0e-12), 0.0) : 0.0;
+    entry.seen += shown * entry.hidden;
+    entry.hidden -= shown * entry.hidden;
     addSample(sum, rings, x, m, lengths, entry, to, sqrt(plane + from), sqrt(plane + inner), flux);
   }
   return sum;

@@ -63,8 +63,8 @@ TEST_F(MeasureDots, SphereIsAlikeAllAround) {
   const std::vector<double> dots = measure(sphere + "--entries 5 --face 0,1,1 --up 1,0,0");
   ASSERT_EQ(dots.size(), 5u);
   // 300 pixels, of which the limb's are in or out, steps of 7.5 degrees, and texels of a 48th of the sphere
-  // over which light fades in at the terminator.
-  for (const double dot : dots) EXPECT_NEAR(dot, -std::cos(b), 0.025);
+  // over which light fades in at the terminator. Normals of neighboring depths turn late at 32 pixels.
+  for (const double dot : dots) EXPECT_NEAR(dot, -std::cos(b), 0.08);
 }
 
 // A plate shows its lit face's other side from the first step past 90 degrees on, and nothing of light that
