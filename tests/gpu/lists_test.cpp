@@ -121,6 +121,80 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
   for (const char* name : kListed) EXPECT_EQ(found.at(name).run, found.at(name).most) << name;
 }
 
+// A sheet 1 mm deep that recedes from 14 to 55 cm, lit from behind. Cells of 4 pixels grow from 2 to 9 mm, and entry points of level 0
+// shrink from 1.8 to .2 mm: probes read all levels.
+Capture recedingSheet() {
+  constexpr int kWidth = 64, kHeight = 256, kMap = 512;
+  constexpr double kLight = -60, kSlope = 1.2;
+  Capture c = flatCapture(kWidth, kHeight);
+  c.metersPerUnit = 0.01;
+  c.clipFromView = perspectiveCapture(kHeight).clipFromView;
+  c.clipFromView[0] = 8;
+  c.clipFromView[5] = -2;
+  // Of planes z = -(distance + slope y), where a ray has y = z times its tangent.
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double tangent = 0.5 - (y + 0.5) / kHeight;
+      c.frontDepth.image.at(x, y)[0] = static_cast<float>(22 / (1 - kSlope * tangent));
+    }
+  c.backDepth = {};
+  Light light = backLight();
+  light.type = PELLUCID_LIGHT_SPOT;
+  light.position = {0, 0, kLight};
+  light.intensity = 3000;
+  ShadowMap map;
+  map.clipFromWorld = {};
+  map.clipFromWorld[0] = map.clipFromWorld[5] = map.clipFromWorld[10] = map.clipFromWorld[11] = 1;
+  map.clipFromWorld[14] = -kLight - 1;
+  map.clipFromWorld[15] = -kLight;
+  map.depth.encoding = PELLUCID_DEPTH_DEVICE;
+  map.depth.image = Image(kMap, kMap, 1);
+  for (int y = 0; y < kMap; ++y)
+    for (int x = 0; x < kMap; ++x) {
+      const double tangent = 2 * (y + 0.5) / kMap - 1;
+      const double along = (-kLight - 22.1) / std::max(1 + kSlope * tangent, 0.1);
+      map.depth.image.at(x, y)[0] = static_cast<float>(1 - 1 / along);
+    }
+  light.shadowMaps = {map};
+  c.lights = {light};
+  return c;
+}
+
+// Probes of one frame read several levels of a map, and all that they read is listed.
+TEST_F(Lists, HoldTheLevelsThatProbesRead) {
+  const Capture c = recedingSheet();
+  ReplaySettings s;
+  s.translucency.gatherSamples = 8;
+  s.translucency.gatherSpacing = 4;
+  s.indirectDispatches = 0;
+  const Image whole = replay(c, testMaterial(), s);
+  for (const int y : {40, 128, 250}) EXPECT_GT(whole.at(32, y)[0], 1.3f) << "light comes through, " << y;
+  s.indirectDispatches = 1;
+  const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
+  EXPECT_TRUE(sameBits(record(run), whole));
+  EXPECT_LT(run.statistics().entryPoints.run, run.statistics().entryPoints.most);
+}
+
+// A cell of 8 mm reads entry points of 1.6 mm, level 2, and one of 2 mm those of .4 mm.
+TEST_F(Lists, SmallFramesNeedFewEntryPoints) {
+  Capture c = flatCapture(96, 96);
+  c.clipFromView[0] = 1.0 / 96;
+  c.clipFromView[5] = -1.0 / 96;
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-11, PELLUCID_DEPTH_VIEW_Z, 1024)};
+  const auto groups = [&](uint32_t spacing) {
+    ReplaySettings s;
+    s.translucency.gatherSamples = 8;
+    s.translucency.gatherSpacing = spacing;
+    const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
+    record(run);
+    return run.statistics().entryPoints.run;
+  };
+  const uint64_t fine = groups(1), coarse = groups(4);
+  EXPECT_GT(fine, 900u);
+  EXPECT_EQ(fine, 16 * coarse) << coarse;
+}
+
 // Material at random: the statistics, the lists and a look at each pixel agree.
 TEST_F(Lists, StatisticsAndBlocksAreThoseOfTheMaterial) {
   constexpr int kSide = 256, kBlock = PELLUCID_STATISTICS_BLOCK;
