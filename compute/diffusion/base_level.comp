@@ -129,8 +129,8 @@ vec2 slopeOfQuads(int place, uint material, float own, vec2 center, vec2 size, v
 // Part of a texel's side that a plane's depths may be off: weights are then within 1 % of 1.
 const float kNearPlane = 0.1;
 
-// Of a surface that ends at a silhouette. Depth goes there like the root of the distance to it: the slope at the last quad, half its
-// side from the silhouette, is the root of 2 times that to the quad before, and its mean over the quad the root of 2 times more.
+// Factor of slopes at a silhouette, near which depth goes like the root of the distance to the silhouette. The last quad's center is half
+// a quad away: its slope is the root of 2 times the slope to the quad before, and the quad's mean slope the root of 2 times more.
 const float kLimb = 1.41421356;
 
 // kLimb where the surface ends in the quad or in the direction in which its depth grows, and no material lies nearer there.

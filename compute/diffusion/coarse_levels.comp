@@ -7,8 +7,8 @@
 #include "diffusion/texel.glsl"
 
 const int kInvocations = GROUP_SIDE * GROUP_SIDE;
-// A group's columns and rows of level 7. Of level 7 - i it needs a window of ((kOwn + 2) << i) - 2: twice those of the coarser level,
-// and one more on each side.
+// Columns and rows of level 7 that a group makes. The group needs ((kOwn + 2) << i) - 2 texels of level 7 - i: twice as many as of the
+// coarser level, and one more on each side.
 const ivec2 kOwn = ivec2(PELLUCID_COARSE_COLUMNS, PELLUCID_COARSE_ROWS);
 const ivec2 kThird = ((kOwn + 2) << 4) - 2, kFourth = ((kOwn + 2) << 3) - 2;
 // Level 4 is made in parts of so many rows, since level 3's window does not fit. A part's input lies behind the parts before it.

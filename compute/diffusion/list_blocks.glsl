@@ -47,7 +47,7 @@ void countBlock(uint block, int i, uvec2 cells) {
 const uint kEntryGroupRowWords = 2u, kEntryGroupRows = 64u; // a row has 64 groups
 const uint kEntryGroupWords = uint(PELLUCID_ENTRY_GROUP_WORDS);
 
-// What probes of a block may read of a map.
+// The part of a map that the probes of a block may read.
 struct EntriesInReach {
   vec4 entries; // [xy, zw], of level 0
   ivec2 levels; // the finest and the coarsest
