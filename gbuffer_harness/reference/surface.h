@@ -34,7 +34,7 @@ public:
   std::optional<Surface> at(int x, int y) const;
 
   // Unit normals of the front and back depths of the surface's pixel and the pixels beside, view space,
-  // towards the eye. Where depths span no plane, the front's is against the ray, and the back has none.
+  // towards the eye. A front whose depths span no plane faces the eye. Such a back has no normal.
   glm::dvec3 facet(const Surface& surface) const;
   std::optional<glm::dvec3> backFacet(const Surface& surface) const;
 

@@ -131,7 +131,7 @@ Capture recedingSheet() {
   c.clipFromView = perspectiveCapture(kHeight).clipFromView;
   c.clipFromView[0] = 8;
   c.clipFromView[5] = -2;
-  // Of planes z = -(distance + slope y), where a ray has y = z times its tangent.
+  // Depths of a plane z = -(distance + slope y): a view ray of a pixel has y = z times the tangent of its angle.
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const double tangent = 0.5 - (y + 0.5) / kHeight;
