@@ -7,6 +7,7 @@
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #include "diffusion/list_blocks.glsl"
 #include "diffusion/texel.glsl"
+#include "lib/surface.glsl"
 
 const int kQuads = PELLUCID_BLOCK / 2 / GROUP_SIDE; // a side, of an invocation
 const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, and with those around it
@@ -91,24 +92,22 @@ vec2 centerOf(uint pixels) {
 
 // ---- Slope: the plane of least squares through a quad's depth, over the 3 x 3 quads around that lie on its surface
 
-// Change of depth per texel along an axis, to whichever neighbor is nearer in depth: the other one may lie across an edge.
-float nearerStep(int place, int stride, uint material, float own, float center) {
-  float best = 0.0, least = 3.0e38;
-  [[unroll]] for (int side = -1; side <= 1; side += 2) {
-    int at = place + side * stride;
-    uint bits = surfaceAt(at);
-    vec2 other = centerOf(pixelsOf(bits));
-    float change = (depths[at] - own) / (float(side) + (stride == 1 ? other.x : other.y) - center);
-    if (!(depths[at] > 0.0) || materialOf(bits) != material || abs(change) >= least) continue;
-    least = abs(change);
-    best = change;
-  }
-  return best;
+// Change of depth per texel along an axis to the neighbor of a quad on one side, 1 or -1; kNoStep: none of its material.
+float stepTo(int place, int stride, int side, uint material, float own, float center) {
+  int at = place + side * stride;
+  uint bits = surfaceAt(at);
+  vec2 other = centerOf(pixelsOf(bits));
+  float change = (depths[at] - own) / (float(side) + (stride == 1 ? other.x : other.y) - center);
+  return depths[at] > 0.0 && materialOf(bits) == material ? change : kNoStep;
+}
+
+float stepAlong(int place, int stride, uint material, float own, float center) {
+  return nearerStep(stepTo(place, stride, 1, material, own, center), stepTo(place, stride, -1, material, own, center));
 }
 
 // Change of depth per texel. `center`: of the quad's pixels; `size`: of a texel at depth `own`.
 vec2 slopeOfQuads(int place, uint material, float own, vec2 center, vec2 size, vec2 ray) {
-  vec2 perTexel = vec2(nearerStep(place, 1, material, own, center.x), nearerStep(place, kRow, material, own, center.y));
+  vec2 perTexel = vec2(stepAlong(place, 1, material, own, center.x), stepAlong(place, kRow, material, own, center.y));
   // A surface is another where it is a texel's side off along the ray.
   float perSquare = inverseSpread(perTexel / max(size, vec2(1.0e-30)), ray, size) * (1.0 + dot(ray, ray));
   vec2 tilt = vec2(0.0), spread = vec2(0.0);

@@ -4,6 +4,7 @@
 #define PELLUCID_DOWNSAMPLE_GLSL
 
 #include "diffusion/texel.glsl"
+#include "lib/surface.glsl"
 
 #ifndef HELD_TEXELS
 #define HELD_TEXELS 1
@@ -70,21 +71,16 @@ int surfaceOf(int first, int stride) {
   return surface;
 }
 
-// Depth change per texel in one direction, to whichever neighbor of the material is nearer in depth, because the other one
-// may lie across an edge.
-float depthStep(int first, int stride, Source center, ivec2 at, ivec2 direction) {
-  float best = 0.0;
-  bool found = false;
-  [[unroll]] for (int side = -1; side <= 1; side += 2) {
-    ivec2 neighbor = at + side * direction, within = clamp(neighbor, ivec2(0), ivec2(3));
-    Source t = sourceAt(tap(first, stride, within.x, within.y));
-    float difference = float(side) * (t.depth - center.depth);
-    bool counts = neighbor == within && t.area != 0.0 && t.material == center.material;
-    bool better = counts && (!found || abs(difference) < abs(best));
-    best = better ? difference : best;
-    found = found || counts;
-  }
-  return best;
+// Change of depth per texel from `center` to its neighbor at a step; kNoStep: none of its material is held.
+float stepTo(int first, int stride, Source center, ivec2 at, ivec2 step) {
+  ivec2 neighbor = at + step, within = clamp(neighbor, ivec2(0), ivec2(3));
+  Source t = sourceAt(tap(first, stride, within.x, within.y));
+  bool counts = neighbor == within && t.area != 0.0 && t.material == center.material;
+  return counts ? float(step.x + step.y) * (t.depth - center.depth) : kNoStep;
+}
+
+float stepAlong(int first, int stride, Source center, ivec2 at, ivec2 axis) {
+  return nearerStep(stepTo(first, stride, center, at, axis), stepTo(first, stride, center, at, -axis));
 }
 
 // Texel from 4 x 4 texels that are not one plane.
@@ -99,8 +95,8 @@ uvec4 downsampledEdge(uint finer, int first, int stride, vec2 ray) {
   ivec2 nearest = ivec2(chosen & 3, chosen >> 2);
   Source surface = sourceAt(tap(first, stride, nearest.x, nearest.y));
   vec2 size = texelSize(surface.depth, finer);
-  vec2 slope = vec2(depthStep(first, stride, surface, nearest, ivec2(1, 0)),
-                    depthStep(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
+  vec2 slope = vec2(stepAlong(first, stride, surface, nearest, ivec2(1, 0)),
+                    stepAlong(first, stride, surface, nearest, ivec2(0, 1))) / max(size, vec2(1.0e-30));
   TangentPlane plane = tangentPlane(slope, ray, inverseSpread(slope, ray, 2.0 * size));
   vec3 color = vec3(0.0);
   float area = 0.0, weights = 0.0, off = 0.0;

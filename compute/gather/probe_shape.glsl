@@ -5,6 +5,7 @@
 #include "diffusion/texel.glsl"
 #include "gather/probe.glsl"
 #include "gather/probe_light.glsl"
+#include "lib/surface.glsl"
 
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
@@ -75,17 +76,16 @@ BackFace backAt(ivec2 pixel) {
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 
-// Steps across and along the image on the back face, to the nearer side each, because the other may lie across an edge. `chord` grows
-// to the lesser of both sides' chords: a crease of a pixel's width, whose back face lies close, is no thin body. False: one is not known.
+// Steps across and along the image on the back face. `chord` grows to the lesser of both sides' chords: a crease of a pixel's width,
+// whose back face lies close, is no thin body. False: a step is not known.
 bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
   bool known = true;
   steps[1] = vec3(0.0);
   [[dont_unroll]] for (int i = 0; i < 2; ++i) {
     ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1);
     BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
-    vec3 forward = f.position - back, backward = back - b.position;
     steps[0] = steps[1];
-    steps[1] = f.chord > 0.0 && !(b.chord > 0.0 && dot(backward, backward) < dot(forward, forward)) ? forward : backward;
+    steps[1] = nearerStep(vec4(f.position - back, f.chord > 0.0 ? 1.0 : 0.0), vec4(back - b.position, b.chord > 0.0 ? 1.0 : 0.0));
     chord = max(chord, min(f.chord, b.chord));
     known = known && (f.chord > 0.0 || b.chord > 0.0);
   }

@@ -103,35 +103,21 @@ bool cameraSees(Shown s, vec3 normal, float tolerance, float uncertain) {
 
 // ---- What the map's neighbors say
 
-// One texel's step along an axis of the map from y, towards whichever neighbor is nearer, because the other may lie across an
-// edge. `stored`: of the neighbors forwards and backwards; `squaredStep`: of a texel across the light.
-vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored, float squaredStep) {
-  vec3 best = vec3(0.0);
-  float least = 3.0e38;
-  for (int i = 0; i < 2; ++i) {
-    int side = 1 - 2 * i;
-    ivec2 neighbor = texel + side * axis;
-    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
-    float theirs = i == 0 ? stored.x : stored.y;
-    if (!shadowHolds(map.meta, theirs)) continue;
-    vec3 toward = float(side) * (pointOf(map, neighbor, theirs).position - y);
-    float squared = dot(toward, toward);
-    if (squared < least) {
-      least = squared;
-      best = toward;
-    }
-    // A step less steep than 60 degrees is no edge.
-    if (squared < 4.0 * squaredStep) break;
-  }
-  return best;
+// From y to the neighboring texel's point at a step; w: 1, or 0 where the map holds none. `stored`: of the neighbor.
+vec4 stepTo(EntryMapConstants map, vec3 y, ivec2 neighbor, float stored) {
+  bool within = all(greaterThanEqual(neighbor, ivec2(0))) && all(lessThan(neighbor, ivec2(map.map.xy)));
+  return within && shadowHolds(map.meta, stored) ? vec4(pointOf(map, neighbor, stored).position - y, 1.0) : vec4(0.0);
+}
+
+// One texel's step along an axis of the map from y. `stored`: of the neighbors forwards and backwards.
+vec3 entryStep(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored) {
+  vec4 forwards = stepTo(map, y, texel + axis, stored.x), backwards = stepTo(map, y, texel - axis, stored.y);
+  return nearerStep(forwards, vec4(-backwards.xyz, backwards.w));
 }
 
 // Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
 vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
-  float scale = map.meta.z == 0u ? 1.0 : y.depth * y.depth;
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y.position, ivec2(1, 0), beside.xy, squareX),
-                      entrySlope(map, texel, y.position, ivec2(0, 1), beside.zw, squareY));
+  vec3 normal = cross(entryStep(map, texel, y.position, ivec2(1, 0), beside.xy), entryStep(map, texel, y.position, ivec2(0, 1), beside.zw));
   float squared = dot(normal, normal);
   if (!(squared > 0.0)) return toLight;
   return normal * (dot(normal, toLight) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));

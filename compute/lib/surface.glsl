@@ -14,14 +14,30 @@ struct Surface {
 // GatherConstants::reflectance.
 float keptReflectance(vec4 slab, float t) { return clamp(slab.x - sqrt(max(slab.y * t * t + slab.z, 0.0)), 0.0, 1.0); }
 
-// From a pixel of planar distance `front` along an axis of the image to its neighbor that is nearer in depth: the other one may
-// lie across an edge. `step`: Camera::rayX or rayY; `direction`: of the pixel's ray; `beside`: distances of the neighbors
-// forwards and backwards, <= 0 where there is none.
+// ---- The nearer of two neighbors along an axis, as the other one may lie across an edge
+
+const float kNoStep = 3.0e38; // there is no such neighbor
+
+// Change of depth along the axis: the lesser of the changes to the neighbors forwards and backwards, each per step forwards.
+// 0 where there is no neighbor.
+float nearerStep(float forwards, float backwards) {
+  float step = abs(backwards) < abs(forwards) ? backwards : forwards;
+  return abs(step) < kNoStep ? step : 0.0;
+}
+
+// The same for changes of position. w: 1 where there is a neighbor, and 0.
+vec3 nearerStep(vec4 forwards, vec4 backwards) {
+  bool nearer = backwards.w > 0.0 && (forwards.w == 0.0 || dot(backwards.xyz, backwards.xyz) < dot(forwards.xyz, forwards.xyz));
+  return nearer ? backwards.xyz : forwards.w * forwards.xyz;
+}
+
+// From a pixel of planar distance `front` along an axis of the image. `step`: Camera::rayX or rayY; `direction`: of the pixel's
+// ray; `beside`: distances of the neighbors forwards and backwards, <= 0 where there is none.
 vec3 alongDepth(vec4 step, vec3 direction, float front, vec2 beside) {
-  vec2 apart = mix(vec2(3.0e38), abs(beside - front), greaterThan(beside, vec2(0.0)));
-  bool back = apart.y < apart.x;
-  float planar = min(apart.x, apart.y) < kNoDepth ? (back ? beside.y : beside.x) : front;
-  return (back ? front - planar : planar - front) * direction + vec3(step.zw + planar * step.xy, 0.0);
+  vec2 changes = mix(vec2(kNoStep), vec2(1.0, -1.0) * (beside - front), greaterThan(beside, vec2(0.0)));
+  float change = nearerStep(changes.x, changes.y);
+  float planar = abs(changes.y) < abs(changes.x) ? front - change : front + change;
+  return change * direction + vec3(step.zw + planar * step.xy, 0.0);
 }
 
 // Unit normal towards the eye of the surface that the depths show; 0 where they show none. `beside`: distances of the pixels
