@@ -37,30 +37,46 @@ MapPoint pointOf(EntryMapConstants map, ivec2 texel, float stored) {
   return MapPoint(map.ray.xyz + depth * at.xyz, abs(depth) < kNoDepth ? depth : kNoDepth);
 }
 
-// ---- What the camera shows
+layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
-// The surface that the camera shows at the pixel of a point.
-struct Shown {
-  ivec2 pixel;  // with a front
+// ---- What the camera shows, and what that hides
+
+// The surface at the pixel of a point: the front that the camera shows, or the back that the front hides.
+struct PixelSurface {
+  ivec2 pixel;  // with a surface
   float planar; // of the point
-  float front;  // of a surface with material; -1: none
+  float depth;  // planar, of a surface with material; -1: none
   vec3 normal;  // unit, outward
   float above;  // how far the point lies before the surface, along its normal
 };
 
-Shown shownAt(vec3 position) {
-  Shown s = Shown(ivec2(0), position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
+// Planar distance of the back of a pixel with a material; -1: none.
+float backAt(ivec2 pixel, uint material) {
+  ivec2 at = inImage(withinRect(pixel));
+  return insideRect(pixel) && materialAt(at) == material ? backDistanceOf(texelFetch(backDepthImage, at, 0).x) : -1.0;
+}
+
+// Unit normal, outward, of the back of a pixel; 0: not known.
+vec3 normalOfBack(ivec2 pixel, float back, uint material) {
+  vec4 beside = vec4(backAt(pixel + ivec2(1, 0), material), backAt(pixel - ivec2(1, 0), material),
+                     backAt(pixel + ivec2(0, 1), material), backAt(pixel - ivec2(0, 1), material));
+  return -normalOfDepths(frame.camera, pixel, back, beside);
+}
+
+PixelSurface surfaceUnder(vec3 position, bool hidden) {
+  PixelSurface s = PixelSurface(ivec2(0), position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
   ivec2 pixel;
   if (!projectToPixel(frame.camera, position, pixel) || !insideRect(pixel)) return s;
   s.pixel = pixel;
   // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused.
   uint material = materialAt(inImage(pixel));
-  float front = frontDistance(inImage(pixel));
-  if (material == 0u || !(front > 0.0)) return s;
-  s.front = front;
-  s.normal = normalOfPixel(pixel, front, material);
+  if (material == 0u) return s;
+  float depth = hidden ? backAt(pixel, material) : frontDistance(inImage(pixel));
+  if (!(depth > 0.0)) return s;
+  s.depth = depth;
+  s.normal = hidden ? normalOfBack(pixel, depth, material) : normalOfPixel(pixel, depth, material);
   ViewRay ray = viewRay(frame.camera, pixel);
-  s.above = dot(s.normal, position - ray.origin - s.front * ray.direction);
+  s.above = dot(s.normal, position - ray.origin - depth * ray.direction);
   return s;
 }
 
@@ -82,23 +98,22 @@ float largerPixelSide(float front) {
   return sqrt(max(squared.x, squared.y));
 }
 
-// True where a point is of the surface that its pixel shows: it lies no further off along the normal than the pixel's plane can
-// tell and its map leaves open. Limbs count only where a bias moved the map's points, which then know less of them than the
-// pixels. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
-bool liesOn(Shown s, vec3 toLight, float tolerance, float uncertain, float offset, bool biased) {
-  if (!(s.front > 0.0) || (!biased && slopeToCamera(s.pixel, s.normal) >= kSteepestSeen)) return false;
+// True where a point is of the surface at its pixel: it lies no further off along the normal than the pixel's plane can tell and its
+// map leaves open. `tolerance`: half a texel; `uncertain`: along the light; `offset`: along normals; scene units.
+bool liesOn(PixelSurface s, vec3 toLight, float tolerance, float uncertain, float offset) {
   float cosine = dot(s.normal, toLight);
-  return cosine > -kMostTurned && abs(s.above) <= min(tolerance, 0.5 * largerPixelSide(s.front)) + offset + uncertain * abs(cosine);
+  return s.depth > 0.0 && cosine > -kMostTurned &&
+         abs(s.above) <= min(tolerance, 0.5 * largerPixelSide(s.depth)) + offset + uncertain * abs(cosine);
 }
 
 // True where a point does not lie behind the surface that its pixel shows: the light that enters there is in the irradiance
 // that diffusion spreads. A surface that faces away cannot be seen, however thin the part is. `uncertain`: along the normal.
-bool cameraSees(Shown s, vec3 normal, float tolerance, float uncertain) {
-  if (!(s.front > 0.0)) return false;
+bool cameraSees(PixelSurface s, vec3 normal, float tolerance, float uncertain) {
+  if (!(s.depth > 0.0)) return false;
   float facing = dot(normal, viewRay(frame.camera, s.pixel).direction), slope = slopeToCamera(s.pixel, normal);
   // Up to half a pixel's diagonal lies between the point and the pixel's center.
-  if (slope < kSteepestSeen) tolerance += 0.70710678 * largerPixelSide(s.front) * slope;
-  return facing < 0.0 && s.planar <= s.front + tolerance + uncertain / max(-facing, kLeastCosine);
+  if (slope < kSteepestSeen) tolerance += 0.70710678 * largerPixelSide(s.depth) * slope;
+  return facing < 0.0 && s.planar <= s.depth + tolerance + uncertain / max(-facing, kLeastCosine);
 }
 
 // ---- What the map's neighbors say
@@ -128,47 +143,18 @@ bvec4 neighborsHold(EntryMapConstants map, vec4 beside) {
                shadowHolds(map.meta, beside.w));
 }
 
-// The step of depth along an axis that two neighboring steps agree best on: a bias jumps between triangles, and within one
-// all steps are alike. beside, beyond: one and two texels ahead, and behind.
-float agreedStep(float own, vec2 beside, vec2 beyond, bvec2 holds, bvec2 holdsBeyond) {
-  vec4 steps = vec4(beside.y - beyond.y, own - beside.y, beside.x - own, beyond.x - beside.x);
-  bvec4 known = bvec4(holds.y && holdsBeyond.y, holds.y, holds.x, holds.x && holdsBeyond.x);
-  float least = 3.0e38, agreed = known.y ? steps.y : known.z ? steps.z : 0.0;
-  for (int i = 0; i < 3; ++i) {
-    float apart = abs(steps[i] - steps[i + 1]);
-    if (!known[i] || !known[i + 1] || apart >= least) continue;
-    least = apart;
-    agreed = 0.5 * (steps[i] + steps[i + 1]);
-  }
-  return agreed;
-}
-
-float agreedStep(EntryMapConstants map, ivec2 texel, ivec2 axis, float own, vec2 beside, bvec2 holds) {
-  ivec2 ahead = texel + 2 * axis, behind = texel - 2 * axis, first = firstTexel(map.occluder), last = ivec2(map.map.xy) - 1;
-  vec2 beyond = vec2(shadowTexel(map.meta.x, first + min(ahead, last)), shadowTexel(map.meta.x, first + max(behind, ivec2(0))));
-  bvec2 holdsBeyond = bvec2(all(lessThanEqual(ahead, last)) && shadowHolds(map.meta, beyond.x),
-                            all(greaterThanEqual(behind, ivec2(0))) && shadowHolds(map.meta, beyond.y));
-  return agreedStep(own, beside, beyond, holds, holdsBeyond);
-}
-
 // Depths that were drawn into a texel and its neighbors, without the map's biases. `uncertain`: how far its own depth may be off.
 // The neighbors of the tile's border are within it: the border itself takes the place of others, and does not count.
 ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored, out float uncertain) {
-  ivec2 last = ivec2(map.map.xy) - 1;
-  bvec4 within = notEqual(besideTexel(texel, ivec2(0), last), texel.xxyy);
+  bvec4 within = notEqual(besideTexel(texel, ivec2(0), ivec2(map.map.xy) - 1), texel.xxyy);
   bvec4 stores = neighborsHold(map, stored.beside), holds = bvec4(uvec4(stores) & uvec4(within));
+  if (map.offsets.y != 0.0) stored.own = withoutPit(map.offsets, stored.own, stored.beside, holds);
   DrawnDepth drawn = drawnDepth(map.offsets, stored.own, stored.beside, holds);
   uncertain = drawn.uncertain;
-  vec4 steps = stored.beside - stored.own;
-  if (map.offsets.y != 0.0) {
-    float own = withoutPit(map.offsets, stored.own, stored.beside, holds);
-    float x = agreedStep(map, texel, ivec2(1, 0), own, stored.beside.xy, holds.xy);
-    float y = agreedStep(map, texel, ivec2(0, 1), own, stored.beside.zw, holds.zw);
-    steps = vec4(x, -x, y, -y);
-    drawn.depth = own - map.offsets.x - map.offsets.y * max(abs(x), abs(y));
-  }
-  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + steps, stores));
+  return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + stored.beside - stored.own, stores));
 }
+
+// ---- Biases. Where the camera tells the surface, a texel's point is where its light ray meets the surface's plane
 
 // Largest slope of a surface towards the light: 87 degrees.
 const float kLeastAlong = 0.05;
@@ -185,10 +171,35 @@ float slopeOnPlane(EntryMapConstants map, vec3 position, vec3 normal) {
   return max(steps.x, steps.y);
 }
 
-// ---- The entry point
-
 // Of 329 texels of an engine's face between triangles that its bias moved apart, 36 remain after one step, 13 after two.
 const int kMostAgain = 3;
+
+// Moves y along its light ray to the surface at its pixel, if y lies on that within what the map leaves open, whichever slope the bias
+// had: that of the map, or that of the surface at the pixel, which leads to another pixel. `asDrawn`: what the texel stores.
+bool moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, bool hidden, vec3 toLight, float tolerance, float uncertain,
+                   inout MapPoint y, inout PixelSurface s) {
+  MapPoint tried = y;
+  [[dont_unroll]] for (int i = 0; i <= kMostAgain; ++i) {
+    PixelSurface next = surfaceUnder(tried.position, hidden);
+    if (!(next.depth > 0.0)) return false;
+    // An offset along normals is undone by its mean, which is off by as much where the light grazes.
+    if (liesOn(next, toLight, tolerance, uncertain, abs(map.offsets.z))) {
+      // Per depth, which is not 0, towards the light or from it.
+      vec3 ray = map.meta.z == 0u ? map.ray.xyz : (tried.position - map.ray.xyz) / tried.depth;
+      float along = max(dot(next.normal, toLight), kLeastCosine) * length(ray), step = next.above / max(along, 1.0e-12);
+      if (map.meta.z == 0u) step = -step;
+      y = MapPoint(tried.position + step * ray, tried.depth + step);
+      s = next;
+      return true;
+    }
+    if (map.offsets.y == 0.0 || map.meta.y != PELLUCID_SHADER_DEPTH_DEVICE) return false;
+    tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, next.normal));
+    if (!(abs(tried.depth) < kNoDepth)) return false;
+  }
+  return false;
+}
+
+// ---- The entry point
 
 // `texel`: of the map's tile.
 uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
@@ -205,25 +216,21 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   float tolerance = map.seen.x * (parallel ? 1.0 : abs(y.depth)); // half a texel
   if (uncertain > 0.0) uncertain = min(distance(pointOf(map, texel, stored.own + uncertain).position, y.position), kNoDepth);
 
-  // Where the camera shows the surface, it knows the normal. The map's neighbors miss normals of surfaces that the light grazes,
+  // Where the camera tells the surface, it knows the normal. The map's neighbors miss normals of surfaces that the light grazes,
   // and between triangles that a slope bias moved apart: light would seem to come through between points of one lit surface.
-  bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0;
-  // An offset along normals is undone by its mean, which is off by as much where the light grazes.
-  float offset = abs(map.offsets.z);
-  Shown shown;
-  bool isShown = false;
-  MapPoint tried = y;
-  [[dont_unroll]] for (int i = 0; !isShown && i <= kMostAgain; ++i) {
-    Shown next = shownAt(tried.position);
-    isShown = liesOn(next, toLight, tolerance, uncertain, offset, biased);
-    if (i == 0 || isShown) shown = next;
-    if (isShown) y = tried;
-    // The slope of what the camera shows undoes the bias again, until that leads to a point of what the camera shows there.
-    if (map.offsets.y == 0.0 || map.meta.y != PELLUCID_SHADER_DEPTH_DEVICE || !(next.front > 0.0)) break;
-    tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, next.normal));
-    if (!(abs(tried.depth) < kNoDepth)) break;
+  PixelSurface shown = surfaceUnder(y.position, false);
+  bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0, isShown;
+  if (biased) {
+    // The camera knows more of limbs than a map whose points a bias moved, and it knows the faces behind them.
+    PixelSurface met = shown;
+    isShown = moveToSurface(map, texel, asDrawn, false, toLight, tolerance, uncertain, y, met);
+    if (isShown) shown = met;
+    if (isShown || (hasFlag(PELLUCID_FLAG_BACK_DEPTH) && moveToSurface(map, texel, asDrawn, true, toLight, tolerance, uncertain, y, met)))
+      normal = met.normal;
+  } else {
+    isShown = liesOn(shown, toLight, tolerance, uncertain, 0.0) && slopeToCamera(shown.pixel, shown.normal) < kSteepestSeen;
+    if (isShown) normal = shown.normal;
   }
-  if (isShown) normal = shown.normal;
 
   float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
   uint material = 0u;

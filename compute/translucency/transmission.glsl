@@ -295,6 +295,41 @@ float unblockedPart(LightConstants light, LightTexels l, float facing) {
   return 1.0 - dot(l.weight, clamp(l.thickness / tolerance - 1.0, 0.0, 1.0));
 }
 
+// ---- The face that a pixel hides: where the light of all that has no map of front faces enters
+
+// False of bodies through which no light comes, whatever their back: most are thick.
+bool isThin(Surface s) {
+  float least = 0.5 * s.chord * abs(dot(s.normal, s.view)) * frame.camera.range.w;
+  return s.chord >= 0.0 && least <= materials[s.material - 1u].transmittance4.w;
+}
+
+// The pixel's chord, unless it is shorter than all chords beside: a silhouette that crosses one pixel is no thin part.
+float chordBeside(Surface s, ivec2 pixel) {
+  float least = kEverywhere;
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 beside = pixelBeside(pixel, i);
+    float front = distanceOf(beside, s.material, false), back = distanceOf(beside, s.material, true);
+    if (front > 0.0 && back > front) least = min(least, back - front);
+  }
+  // Rays meet the plane of depths at less than 90 degrees.
+  return least < kEverywhere ? max(s.chord, least / max(abs(s.view.z), 1.0e-3)) : s.chord;
+}
+
+struct HiddenFace {
+  vec3 position, normal; // outward
+  float thickness;       // of the body, scene units
+  float opposite;        // part of the light that enters there that leaves at the pixel
+};
+
+HiddenFace hiddenFace(Surface s, ivec2 pixel) {
+  vec3 facet = facetAt(pixel, s.material, true), front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
+  float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
+  // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
+  const float kPerCosine = 3.0;
+  float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
+  return HiddenFace(s.position + s.chord * s.view, back, thickness, seen * (0.5 - 0.5 * dot(front, back)));
+}
+
 // ---- Light from all around. A thin body sends on what comes from behind, and returns less of what lies on it than a half-space
 // does; docs/integration.md says why both count
 
@@ -313,78 +348,42 @@ bool isAmbient(LightConstants light) {
   return mayUse(PELLUCID_SHADER_USE_AMBIENT) && light.meta.x == PELLUCID_SHADER_LIGHT_AMBIENT;
 }
 
-// Most bodies are thick, whatever their back.
-bool passesAmbient(Surface s) {
-  float least = 0.5 * s.chord * abs(dot(s.normal, s.view)) * frame.camera.range.w;
-  return s.chord >= 0.0 && least <= materials[s.material - 1u].transmittance4.w;
-}
-
-// The pixel's chord, unless it is shorter than all chords beside: a silhouette that crosses one pixel is no thin part.
-float chordBeside(Surface s, ivec2 pixel) {
-  float least = kEverywhere;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 beside = pixelBeside(pixel, i);
-    float front = distanceOf(beside, s.material, false), back = distanceOf(beside, s.material, true);
-    if (front > 0.0 && back > front) least = min(least, back - front);
-  }
-  // Rays meet the plane of depths at less than 90 degrees.
-  return least < kEverywhere ? max(s.chord, least / max(abs(s.view.z), 1.0e-3)) : s.chord;
-}
-
-// `facet`: normal of the back depths, towards the eye; 0: not known.
-Transmitted ambientTransmission(Surface s, ivec2 pixel, vec3 facet) {
-  vec3 front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
-  float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
-  // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
-  const float kPerCosine = 3.0;
-  float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
-  float opposite = seen * (0.5 - 0.5 * dot(front, back));
-  vec3 visible = hasFlag(PELLUCID_FLAG_BODIES) ? vec3(0.0) : ambientIrradiance(front);
-  return Transmitted(thickness, hiddenIrradiance(pixel, back), opposite, opposite * visible);
+Transmitted ambientTransmission(Surface s, ivec2 pixel, HiddenFace face) {
+  vec3 visible = hasFlag(PELLUCID_FLAG_BODIES) ? vec3(0.0) : ambientIrradiance(s.normal);
+  return Transmitted(face.thickness, hiddenIrradiance(pixel, face.normal), face.opposite, face.opposite * visible);
 }
 
 // ---- Light through any surface
 
-// A slab's thickness along its normal, from the chord along the view ray.
-float chordThickness(Surface s) {
-  return hasFlag(PELLUCID_FLAG_CHORD_THICKNESS) ? s.chord : s.chord * abs(dot(s.normal, s.view));
-}
-
 // docs/integration.md, "Lights and shadow maps", says when each source is used. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
-  bool wall = isThinWalled(s.material), mapped = light.meta.z != 0u;
-  bool holdsExits = light.meta.w != 0u, ambient = isAmbient(light);
+  bool wall = isThinWalled(s.material), ambient = isAmbient(light), mapped = light.meta.z != 0u;
   // A sheet's T is the same at any thickness, and its reflectance is its own.
   if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -s.normal), 1.0, vec3(0.0));
-  if (ambient && !passesAmbient(s)) return kNothingTransmitted;
-  // Exit depths do not say where light enters. Then the hidden face lies where the chord ends, and the map says alone which light gets there.
-  bool byChord = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
-  Transmitted t = kNothingTransmitted;
-  if (byChord && s.chord < 0.0) return t;
-  vec3 x = byChord ? s.position + s.chord * s.view : s.position;
-  Incident incident = lightAt(light, x);
-  t.arriving = incident.irradiance * hiddenCosine(light, s, incident.toLight);
-  if (byChord) t = Transmitted(chordThickness(s), t.arriving, 1.0, vec3(0.0));
-  if (byChord && !mapped && !ambient) return t;
-  // Most pixels face some lights, whose maps need no reading.
-  if (t.arriving == vec3(0.0) && !ambient) return t;
-  float farthest = byChord || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
-  LightTexels l = LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
-  if (!ambient) l = lightTexels(light, incident, wall ? 0u : s.material, x, byChord ? 0.0 : dot(s.normal, incident.toLight), farthest);
-  vec3 facet = s.normal;
-  if (byChord) {
-    // Back depths are read only where they may decide: where a texel may store the hidden face.
-    vec4 apart = mix(vec4(kEverywhere), abs(l.thickness), greaterThan(l.weight, vec4(0.0)));
-    bool near = min(min(apart.x, apart.y), min(apart.z, apart.w)) < 2.0 * (kMostTexels * l.side + l.uncertain);
-    facet = ambient || near ? facetAt(pixel, s.material, true) : vec3(0.0);
+  // Exit depths do not say where light enters: it enters the hidden face, which they may hide from the light.
+  bool holdsExits = light.meta.w != 0u, hidden = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
+  HiddenFace face = HiddenFace(s.position, s.normal, wall ? 0.0 : -1.0, 1.0);
+  if (hidden) {
+    if (!isThin(s)) return kNothingTransmitted;
+    face = hiddenFace(s, pixel);
+    if (ambient) return ambientTransmission(s, pixel, face);
+    if (hasFlag(PELLUCID_FLAG_CHORD_THICKNESS)) face.thickness = s.chord;
   }
-  if (ambient) return ambientTransmission(s, pixel, facet);
-  float facing = dot(facet, incident.toLight);
+  Incident incident = lightAt(light, face.position);
+  float facing = dot(face.normal, incident.toLight), cosine = hidden ? max(facing, 0.0) : 0.0;
+  if (!hidden || angleModel() != PELLUCID_SHADER_ANGLE_NORMAL) {
+    cosine = hiddenCosine(light, s, incident.toLight);
+    face.opposite = 1.0;
+  }
+  Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, face.opposite, vec3(0.0));
+  // Most pixels face some lights, whose maps need no reading.
+  if (t.arriving * t.visible == vec3(0.0) || (hidden && !mapped)) return t;
+  float farthest = hidden || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  LightTexels l = lightTexels(light, incident, wall ? 0u : s.material, face.position, hidden ? 0.0 : facing, farthest);
   if (wall) {
-    t.thickness = 0.0;
     t.visible = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0) * unblockedPart(light, l, facing);
-  } else if (byChord) {
-    t.visible = litPart(l, facing, holdsExits);
+  } else if (hidden) {
+    t.visible *= litPart(l, facing, holdsExits);
   } else {
     vec4 weight = throughWeights(l, facing);
     t.thickness = meanThickness(weight, l.thickness, s.material - 1u);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "reference/transmittance.h"
@@ -40,24 +39,6 @@ glm::dvec3 Ambient::irradiance(const Harmonics& environment, const glm::dvec3& n
   return glm::max(sum, glm::dvec3(0));
 }
 
-// The surface's chord, unless it is shorter than all chords of pixels beside.
-double Ambient::chordBeside(const Surface& s) const {
-  const auto indexOf = [&](const glm::ivec2& p) {
-    return static_cast<std::size_t>(p.y) * static_cast<std::size_t>(capture_.width) +
-           static_cast<std::size_t>(p.x);
-  };
-  double least = std::numeric_limits<double>::infinity();
-  for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-    const glm::ivec2 p = s.pixel + step;
-    if (p.x < 0 || p.y < 0 || p.x >= capture_.width || p.y >= capture_.height ||
-        capture_.material[indexOf(p)] != capture_.material[indexOf(s.pixel)])
-      continue;
-    if (const std::optional<Surface> beside = surfaces_.at(p.x, p.y); beside && beside->chord)
-      least = std::min(least, *beside->chord * std::abs(beside->ray.z / s.ray.z));
-  }
-  return std::isinf(least) ? *s.chord : std::max(*s.chord, least);
-}
-
 glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
   if (!capture_.environment && capture_.hiddenIrradiance.empty()) return glm::dvec3(0);
   const PellucidMaterial& m = materials_[material];
@@ -75,17 +56,13 @@ glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
     return glm::dvec3(m.wallTransmittance[0], m.wallTransmittance[1], m.wallTransmittance[2]) *
            hidden(-front);
   if (!s.chord) return glm::dvec3(0);
-  const std::optional<glm::dvec3> towardsEye = surfaces_.backFacet(s);
-  const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
-  const double h = 0.5 * chordBeside(s) * surfaces_.millimetersPerUnit() *
-                   (std::abs(glm::dot(front, s.ray)) + std::abs(glm::dot(back, s.ray)));
+  const SurfaceReader::HiddenFace face = surfaces_.hiddenFace(s);
+  const double h = face.thickness * surfaces_.millimetersPerUnit();
   const glm::dvec3 rho(m.reflectance[0], m.reflectance[1], m.reflectance[2]);
   const glm::dvec3 kept = kernels_[material] ? kernels_[material]->slabReflectance(h) : glm::dvec3(1);
-  const glm::dvec3 through = transmittance(m, h) * hidden(back);
+  const glm::dvec3 through = transmittance(m, h) * hidden(face.normal);
   const glm::dvec3 lost = (1.0 - kept) * rho * visible(front);
-  const double seen =
-      std::min(3 * std::min(std::abs(glm::dot(front, s.ray)), std::abs(glm::dot(back, s.ray))), 1.0);
-  return seen * (0.5 - 0.5 * glm::dot(front, back)) * (through - lost);
+  return face.opposite * (through - lost);
 }
 
 }  // namespace pellucid::harness::reference

@@ -26,8 +26,6 @@ public:
   static glm::dvec3 irradiance(const Harmonics& environment, const glm::dvec3& normal);
 
 private:
-  double chordBeside(const Surface& surface) const;
-
   const Capture& capture_;
   const SurfaceReader& surfaces_;
   const std::vector<PellucidMaterial>& materials_;

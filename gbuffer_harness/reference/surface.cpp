@@ -213,6 +213,28 @@ std::optional<glm::dvec3> SurfaceReader::backFacet(const Surface& s) const {
   return normalFromDepth(capture_.backDepth, s.pixel.x, s.pixel.y, s.position + *s.chord * s.ray);
 }
 
+double SurfaceReader::chordBeside(const Surface& s) const {
+  double least = INFINITY;
+  for (const glm::ivec2& step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+    const glm::ivec2 p = s.pixel + step;
+    if (p.x < 0 || p.y < 0 || p.x >= capture_.width || p.y >= capture_.height ||
+        materialAt(p.x, p.y) != materialAt(s.pixel.x, s.pixel.y))
+      continue;
+    if (const std::optional<Surface> beside = at(p.x, p.y); beside && beside->chord)
+      least = std::min(least, *beside->chord * std::abs(beside->ray.z / s.ray.z));
+  }
+  return std::isinf(least) ? *s.chord : std::max(*s.chord, least);
+}
+
+SurfaceReader::HiddenFace SurfaceReader::hiddenFace(const Surface& s) const {
+  const glm::dvec3 front = facet(s);
+  const std::optional<glm::dvec3> towardsEye = backFacet(s);
+  const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
+  const double cosine = std::abs(glm::dot(front, s.ray)), other = std::abs(glm::dot(back, s.ray));
+  const double seen = std::min(3 * std::min(cosine, other), 1.0);
+  return {s.position + *s.chord * s.ray, back, 0.5 * chordBeside(s) * (cosine + other), seen * (0.5 - 0.5 * glm::dot(front, back))};
+}
+
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {
   const glm::dvec3 flatX = flatStep(x, y, s.position, {1, 0}), flatY = flatStep(x, y, s.position, {0, 1});
   glm::dvec3 n = s.normal;

@@ -38,6 +38,15 @@ public:
   glm::dvec3 facet(const Surface& surface) const;
   std::optional<glm::dvec3> backFacet(const Surface& surface) const;
 
+  // The face that a pixel hides, from the depths of the pixel and the pixels beside.
+  struct HiddenFace {
+    glm::dvec3 position, normal;  // view space; unit, outward: opposite to the front where back depths span no plane
+    double thickness;             // of the body, scene units
+    double opposite;              // part of the light that enters there that leaves at the pixel
+  };
+  // `surface` has a chord.
+  HiddenFace hiddenFace(const Surface& surface) const;
+
   // Parallelogram of the surface's tangent plane that the pixel covers: its two half-axes, scene
   // units, view space. Tilted planes tile without gaps. Planes seen more obliquely than
   // kLeastCosine are turned towards the eye until they are not, so no pixel stands for more than
@@ -60,6 +69,8 @@ private:
   };
 
   std::uint8_t materialAt(int x, int y) const;
+  // The surface's chord, unless it is shorter than all chords of pixels beside.
+  double chordBeside(const Surface& surface) const;
   std::optional<double> planarDepth(const DepthImage& depth, int x, int y) const;
   Quad makeQuad(int column, int row) const;
   // One that has no surface beyond the image.

@@ -200,18 +200,14 @@ Translucency::LightPath Translucency::lightSpacePath(std::size_t light, const Re
   return path;
 }
 
-double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const {
+double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint, double facing) const {
   if (shadows_[light].empty()) return 1;
   const std::optional<Taps> taps = texelsAround(light, backPoint);
   if (!taps) return 0;
-  // 0: not known.
-  const std::optional<glm::dvec3> facet = surfaces_.backFacet(*r.surface);
-  const glm::dvec3 toLight = arrivalAt(capture_.lights[light], backPoint).toLight;
-  const double cosine = facet ? glm::dot(glm::dmat3(surfaces_.worldFromView()) * *facet, toLight) : 0;
   double lit = 0;
   for (const auto& [weight, found] : *taps) {
     if (!entersMedium(found, r)) continue;
-    const double tolerance = ownTolerance(found, cosine) + found.uncertain;
+    const double tolerance = ownTolerance(found, facing) + found.uncertain;
     // A face that light leaves by is not one that it enters by.
     const double most = holdsBackFaces(capture_.lights[light]) ? 0 : 2;
     lit += weight * std::clamp(most - found.distance / tolerance, 0.0, 1.0);
@@ -222,11 +218,15 @@ double Translucency::litPart(std::size_t light, const Receiver& r, const glm::dv
 Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const Receiver& r) const {
   LightPath path;
   if (!r.chord) return path;
-  const glm::dvec3 backPoint = r.position + *r.chord * r.ray;
+  const SurfaceReader::HiddenFace face = surfaces_.hiddenFace(*r.surface);
+  const glm::dmat4& world = surfaces_.worldFromView();
+  const glm::dvec3 backPoint = glm::dvec3(world * glm::dvec4(face.position, 1));
   const Arrival arrival = arrivalAt(capture_.lights[light], backPoint);
-  path.arriving = arrival.irradiance * hiddenCosine(r, light, arrival.toLight);
-  path.reaches = litPart(light, r, backPoint);
-  path.thickness = *r.chord * (settings_.chordThickness ? 1 : std::abs(glm::dot(r.normal, r.ray)));
+  const double facing = glm::dot(glm::dmat3(world) * face.normal, arrival.toLight);
+  const bool byNormal = settings_.angleModel == PELLUCID_ANGLE_NORMAL;
+  path.arriving = arrival.irradiance * (byNormal ? std::max(facing, 0.0) : hiddenCosine(r, light, arrival.toLight));
+  path.reaches = (byNormal ? face.opposite : 1) * litPart(light, r, backPoint, facing);
+  path.thickness = settings_.chordThickness ? *r.chord : face.thickness;
   return path;
 }
 

@@ -78,7 +78,8 @@ private:
   double comesThrough(const ShadowView::Lookup& lookup, const Receiver& r, const glm::dvec3& toLight) const;
   // Scene units. `weights`: of the taps; not all 0.
   double meanThickness(const Taps& taps, const std::array<double, 4>& weights, const Receiver& r) const;
-  double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint) const;
+  // Part of the light that the map's texels let come to a hidden face. `facing`: cosine of the face's normal with the light.
+  double litPart(std::size_t light, const Receiver& r, const glm::dvec3& backPoint, double facing) const;
 
   const Capture& capture_;
   const SurfaceReader& surfaces_;

@@ -208,7 +208,7 @@ constexpr Pass kEntryPointsPass{
     .uses = kGather,
     .reads = shadowImages(PELLUCID_ENTRY_IMAGE_COUNT) |
              bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
-                      PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
+                      PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_MATERIAL,
                       PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
@@ -306,15 +306,10 @@ public:
 
   void addAll() {
     if (stages_.nothing) return;
-    // Gathered light has already spread on its way through; diffusing it again would spread it twice.
-    if (p_.facts.gathers) {
-      thinWalls();
-      diffusion();
-      translucency();
-    } else {
-      translucency();
-      diffusion();
-    }
+    // Light with one thickness a pixel has not spread on its way through: the diffusion spreads it.
+    thinWalls();
+    translucency();
+    diffusion();
   }
 
 private:
@@ -330,7 +325,6 @@ private:
     source_ = destination;
   }
 
-  // Before the diffusion, as without a gather: materials say whether light spreads within a sheet.
   void thinWalls() {
     if (stages_.walls == 0) return;
     for (const LightGroup& group : p_.facts.lights.list())
