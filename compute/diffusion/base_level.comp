@@ -42,7 +42,7 @@ struct QuadSurface {
   bool ends; // a pixel has no material, or what it shows lies behind
 };
 
-// Largest change of depth from pixel to pixel on one surface, over a pixel's side: 83 degrees from facing the camera.
+// Largest slope of one surface, 83 degrees from facing the camera: a silhouette doubles it, which gives kMostArea.
 const float kSteepest = 8.0;
 
 // `materials`: of the quad's pixels, a byte each.
@@ -125,7 +125,7 @@ vec2 slopeOfQuads(int place, uint material, float own, vec2 center, vec2 size, v
   return perTexel + tilt / max(spread, vec2(1.0e-3));
 }
 
-// Part of a texel's side that a plane's depths may be off: weights are then within 1 % of 1.
+// Part of a texel's side that a plane's depths may be off: weights are then within 1 % of 1, less than areas are rounded by.
 const float kNearPlane = 0.1;
 
 // Factor of slopes at a silhouette, near which depth goes like the root of the distance to the silhouette. The last quad's center is half

@@ -68,16 +68,15 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
   }
 }
 
-// A pixel that is a quarter of its side off a probe's tangent plane is not of its surface. Half and a tenth of the side err
-// more on heads.
-const float kPerPixelOff = 4.0;
+// A pixel that is half of its side off a probe's tangent plane is not of the probe's surface: the plane crosses another pixel.
+const float kPerPixelOff = 2.0;
 
-// Quarters of a pixel from a probe's tangent plane to a surface at `front` in a pixel.
+// Halves of a pixel from a probe's tangent plane to a surface at `front` in a pixel.
 float offPlane(ProbePlace p, ivec2 probePixel, ivec2 pixel, float front) {
   Camera c = frame.camera;
   vec2 sideX = c.rayX.zw + p.front * c.rayX.xy, sideY = c.rayY.zw + p.front * c.rayY.xy;
-  // The limit gives planes that are seen edge-on a slope.
-  float facing = min(dot(p.normal, viewRay(c, probePixel).direction), -0.1);
+  // The limit gives planes that are seen edge-on a slope, that of the largest area.
+  float facing = min(dot(p.normal, viewRay(c, probePixel).direction), -1.0 / kMostArea);
   vec2 steps = -vec2(dot(p.normal.xy, sideX), dot(p.normal.xy, sideY)) / facing;
   // Pixels have a size in front of the eye.
   float perSide = inversesqrt(max(dot(sideX, sideX), 1.0e-30));

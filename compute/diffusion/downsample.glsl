@@ -17,7 +17,7 @@ const int kTaps = 16; // texels under a texel
 
 float weight(int i) { return i == 0 || i == 3 ? PELLUCID_DOWNSAMPLE_OUTER : PELLUCID_DOWNSAMPLE_INNER; }
 
-// A plane's largest mean squared distance, over the squared length of a texel's side. Curved surfaces below it gain nothing
+// A plane's largest mean squared distance, over a texel's squared side: that of kNearPlane. Curved surfaces below it gain nothing
 // from weights of their own.
 const float kPlaneResidual = 0.01;
 

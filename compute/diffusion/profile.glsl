@@ -55,11 +55,14 @@ Foreshortening foreshortening(ivec2 texel, uint level, float depth, vec2 slope) 
   return Foreshortening(sqrt(middle + root) * c.range.w, (middle + root) / max(least, 1.0e-30) - 1.0, axis);
 }
 
+// Octaves between the kernel's sides from which on shares ignore them: one more than stretched() of upsample.comp reaches, 1.5.
+const float kMostOctaves = 2.5;
+
 // Shares of pixels of a texel of level 2. Octaves between the kernel's sides count by factors of pellucid_filters.h: one octave is 60
-// degrees from facing the camera. From 69 to 80 degrees, 1.5 to 2.5 octaves, they fade, as surfaces leave their tangent planes there.
+// degrees from facing the camera. They fade over the last octave, 69 to 80 degrees.
 PixelShares pixelShares(uint m, Foreshortening f) {
   // The stretch is >= 0 but for rounding.
-  float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(2.5 - longer, 0.0, min(longer, 1.0));
+  float longer = 0.5 * log2(1.0 + max(f.stretch, 0.0)), octaves = clamp(kMostOctaves - longer, 0.0, min(longer, 1.0));
   float entry = shareEntry(m, 0.25 * f.lengthMm), perOctave = kernels[m].range.y * octaves; // of a pixel, 1/4 of the texel
   float straight = abs(f.axis.x * f.axis.x - f.axis.y * f.axis.y); // 1: along rows or columns, 0: along a diagonal
   vec3 coarser = beyondPixel(m, 0u, entry - perOctave * (PELLUCID_FORESHORTENED_COARSER - PELLUCID_FORESHORTENED_STRAIGHT * straight));

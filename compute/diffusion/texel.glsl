@@ -20,7 +20,7 @@ struct Texel {
 
 uvec2 packColor(vec3 color, uint upper) { return packHalves(roundToHalf(color), upper); }
 
-const float kMostArea = 16.0;
+const float kMostArea = 16.0; // the largest that packArea's 7 bits hold
 
 // Projected-area weights, 0 to 16, take 7 bits. The root makes them exact to 1.6 % at 1.
 uint packArea(float area) {
@@ -134,8 +134,9 @@ TangentPlane tangentPlane(vec2 slope, vec2 ray, float inverse2) {
 // the ray, the squared distance differs by (a + o)^2 - a^2 = o (o + 2 a). The two terms have factors of their own, x and y of
 // `falloff`: the first says how far a kernel bridges gaps, the second how it shifts on curved surfaces, where filters of few
 // taps shift less than Gaussians.
+const float kMostRoot = 1.4; // of a weight: no tap counts more than twice as much as on the plane
 float tangentPlaneWeight(TangentPlane plane, float off, vec2 x, vec2 falloff) {
-  float rest = clamp(1.0 - off * (falloff.x * plane.ray2 * off + falloff.y * dot(plane.along, x)) * plane.inverse2, 0.0, 1.4);
+  float rest = clamp(1.0 - off * (falloff.x * plane.ray2 * off + falloff.y * dot(plane.along, x)) * plane.inverse2, 0.0, kMostRoot);
   return rest * rest;
 }
 
@@ -186,7 +187,7 @@ vec3 normalBetween(ivec2 pixel, float front, uint material) {
   return total > 0.0 ? normalize(sum) : normalOfSlope(vec2(0.0), ray); // the normals are within 90 degrees of the ray
 }
 
-// Texels around a texel lie on its plane up to this part of the squared length of its side.
+// Texels around lie on a texel's plane up to this part of its squared side: kPixelFalloff then weights them with .9 at least.
 const float kPlaneOffset = 0.1;
 
 // Falloffs of downsampling, of the stretch and the coarser levels of upsampling, and of the last pass. They have the least

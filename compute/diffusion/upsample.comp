@@ -51,7 +51,10 @@ int indexOf(Window window, ivec2 texel) {
 
 // ---- A level's own part of the kernel, and the coarser levels under it
 
-const int kReach = 4; // of the stretch, texels
+// Of the stretch, texels: eight reads. It widens kernels in full up to 69 degrees from facing the camera.
+const int kReach = 4;
+// Of the stretch, squared texels: below it a texel beside has less than 1 % of the weight, as little as areas are rounded by.
+const float kLeastVariance = 0.02;
 
 // Foreshortened surfaces need a level's kernel longer along one axis: the filter is a 1-D Gaussian of what is missing, at the
 // texels nearest to the axis.
@@ -62,7 +65,7 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   float dominant = alongX ? f.axis.x : f.axis.y; // its square is at least 1/2
   float gradient = (alongX ? f.axis.y : f.axis.x) / dominant;
   variance = min(variance * dominant * dominant, float(kReach));
-  if (own.area == 0.0 || variance < 0.02) return sum;
+  if (own.area == 0.0 || variance < kLeastVariance) return sum;
   float weights = 1.0;
   vec2 size = texelSize(own.depth, level);
   vec2 ray = facingRayAt(pixelOf(level, texel));

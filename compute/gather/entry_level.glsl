@@ -5,7 +5,7 @@
 
 #include "frame/frame.glsl"
 
-// Largest side of an entry point, per side of the cell that reads it.
+// Largest side of an entry point, per side of the cell that reads it: a pixel of the largest cells, which have 4 x 4.
 const float kMostOfCell = 0.25;
 
 // Shorter side of a cell of `pixels` a side at a planar distance, scene units. It is monotonic in the distance.

@@ -22,7 +22,7 @@ struct EntryPoint {
 };
 
 // Least cosine at which a surface counts: a sample that stands for more than five times its own area shows as a dot at
-// terminators.
+// terminators. Measured: procedural shells and balls of skin, rings of marble.
 const float kLeastCosine = 0.2;
 
 const float kNoExit = 6.0e4; // fits in a half

@@ -29,15 +29,18 @@ GatherSlab gatherSlab(vec4 a, vec4 b, vec4 c, float fraction) {
   return GatherSlab(a.rgb + fraction * vec3(a.w, b.rg), vec3(b.zw, c.x) + fraction * c.yzw);
 }
 
+const float kOneOverPi = 0.31830989;
+
 // Integral of K(r, h) over the ring between the distances `near` and `far` from x: T [e^{-q (near - h)} - e^{-q (far - h)}] is
-// exact for slabs. Where h grows with r, as on spheres, K falls like T(r), with a slope that is within 14 % a line in q, for q
-// up to 5 kappa: before h, to second order, and beyond h by the part `curved`, 0 to 1. The channel that spreads furthest
-// decides the slope, because light of the others comes from rings that are small beside it.
+// exact for slabs. Where h grows with r, as on spheres, K falls like T(r): before h, to second order, and beyond h by the part
+// `curved`, 0 to 1. T(r) falls at the rate kappa coth(kappa (r + e)), q / pi on thin bodies and q = kappa on thick ones. A parabola in
+// kappa / q between both is within 8 %. The channel that spreads furthest decides this slope, because light of the others comes
+// from rings that are small beside it.
 vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, float near, float far) {
   float begins = max(near, h), before = 0.69314718 * (begins - near);
   vec3 q = slab.decay;
   float kappa = 2.0 / 0.69314718 / lengths.z; // of that channel, in powers of 2: at most the least q, above 0
-  float slope = 0.2 + 0.8 * kappa / min(min(q.r, q.g), q.b), decay = mix(1.0, slope, curved);
+  float part = kappa / min(min(q.r, q.g), q.b), slope = mix(kOneOverPi, 1.0, part * part), decay = mix(1.0, slope, curved);
   vec3 logarithm = slab.logarithm - q * h;
   vec3 begin = exp2(logarithm - q * (decay * (begins - h))), end = exp2(logarithm - q * (decay * (far - h)));
   return (begin - end) / decay + begin * q * (before + 0.5 * before * before * slope * q);
@@ -122,7 +125,7 @@ int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
 }
 
-const float kSteepestOwn = 4.0; // largest slope of the surface at x within an entry point: 76 degrees
+const float kSteepestOwn = 4.89897949; // largest slope of the surface at x within an entry point: that of kLeastCosine, 78 degrees
 
 // An axis between the light's ray and the inward normal suits slabs, whose rings lie around the foot of the perpendicular.
 // false: no map contains x, so that no light comes through it.
@@ -140,8 +143,8 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.level = levelOf(light, rings.map, x.position);
   rings.entrySide = entrySide(light, rings.map, x.position) * mm * float(1 << rings.level);
   uvec4 bits = entryAt(rings.map, placeInMap(parallel, point), rings.level);
-  // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
-  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
+  // The slope of the surface counts within an entry point, as in arrivesAt and depthTolerance.
+  rings.tolerance = max(rings.entrySide * (1.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   EntryPoint own = unpackEntry(bits);
@@ -218,8 +221,14 @@ float staysInside(GatherRings rings, LightConstants light, Surface x, uint map, 
   return stays;
 }
 
+// Largest slope across the light at which an entry point's plane goes on: kSteepestSeen of texel_entry.glsl.
+const float kSteepestPlane = 2.0;
+
 // A sample's place from x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
+
+// Multiplier of the lattice of patterns. Measured: procedural shells, rings of marble, balls of skin.
+const int kLattice = 11;
 
 // A cell takes one of 25 patterns. Probes that are too far apart to share all take the middle one.
 struct Pattern {
@@ -229,10 +238,10 @@ struct Pattern {
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  // A cell and the 24 that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and
-  // its like; of five lattices this one leaves fewest dots. Turns begin off the axes, along which edges often lie.
-  int turn = (cell.x + 7 * cell.y + frame.lattice.z) % 25, within = turn * 11 % 25;
-  return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) / 25.0 + 0.025));
+  // A cell and the 24 that it shares with have one pattern each: 7 a row, as diamonds of 25 cells then tile the plane. A lattice fills
+  // the strata, and the turn between a sample and its like. Turns begin half a step off the axes, along which edges often lie.
+  int turn = (cell.x + 7 * cell.y + frame.lattice.z) % 25, within = turn * kLattice % 25;
+  return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) + 0.5) / 25.0);
 }
 
 // Sums over samples, of a light of radiance 1; docs/how-it-works.md derives them. hidden, seen: from the camera.
@@ -272,6 +281,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   float mm = frame.camera.range.w;
   bool parallel = directional(light);
   vec4 lengths = materials[m].gather.lengths;
+  // Any direction will do, if it is not next to the axis.
   vec3 across = normalize(cross(rings.axis, abs(rings.axis.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
   vec3 along = cross(rings.axis, across);
   // Positions and what maps make of them are affine in mm across and along the rings.
@@ -306,7 +316,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
     // The entry point's plane goes on to the sample's own ray, if the plane faces the light: a shown normal may turn away.
     vec2 off = (vec2(ivec2(place) >> level) + 0.5) * float(1 << level) - place; // in entry points of level 0
     vec3 middle = (off.x * maps[map].stepX.xyz + off.y * maps[map].stepY.xyz) * mm * (parallel ? 1.0 : entry.depth);
-    float towards = dot(entry.normal, toLight), most = 2.0 / float(1 << level) * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
+    float towards = dot(entry.normal, toLight), most = kSteepestPlane / float(1 << level) * length(middle) * inversesqrt(max(dot(toLight, toLight), 1.0e-12));
     if (towards > 0.0) ahead += clamp(dot(entry.normal, middle) / max(towards, 1.0e-6 * mm), -most, most);
     vec3 to = -(s + ahead * toLight);
     // The ring counts as if all of it lay in the lit point's plane across the axis.

@@ -11,7 +11,7 @@ layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDep
 
 // Step from a probe to a quad beside it.
 struct Beside {
-  vec4 apart; // change of position, mm; w: 1 where the surface goes on, down to 0 at two to three times `reach`
+  vec4 apart; // change of position, mm; w: 1 where the surface goes on, down to 0 at two to three times `reach`: turned by 60 to 70 degrees
   vec3 turn;  // change of the normal
 };
 
@@ -37,7 +37,7 @@ Beside acrossOf(Beside forward, Beside backward) {
 ivec2 stepsOf(Surface x, ViewRay ray, float front, inout float reach) {
   Camera c = frame.camera;
   vec3 sideX = vec3(c.rayX.zw + front * c.rayX.xy, 0.0), sideY = vec3(c.rayY.zw + front * c.rayY.xy, 0.0);
-  float facing = min(dot(x.normal, ray.direction), -0.1); // planes seen edge-on would have no end
+  float facing = min(dot(x.normal, ray.direction), -0.1); // planes seen edge-on would have no end; any small value will do
   sideX -= ray.direction * (dot(x.normal, sideX) / facing);
   sideY -= ray.direction * (dot(x.normal, sideY) / facing);
   vec2 size = sqrt(vec2(dot(sideX, sideX), dot(sideY, sideY))) * c.range.w;
@@ -54,7 +54,7 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
     a = b;
     b = acrossOf(besideAt(pixel + step, x, reach), besideAt(pixel - step, x, reach));
   }
-  // The curvature is half the trace of the map from steps to turns.
+  // The curvature is half the trace of the map from steps to turns. Steps within 6 degrees of one direction do not tell it.
   float area = dot(x.normal, cross(a.apart.xyz, b.apart.xyz));
   float least = 0.1 * sqrt(dot(a.apart.xyz, a.apart.xyz) * dot(b.apart.xyz, b.apart.xyz));
   float trace = dot(x.normal, cross(a.turn, b.apart.xyz) + cross(a.apart.xyz, b.turn));
@@ -94,8 +94,9 @@ bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
 
 const float kThick = 1.0e6;          // mm
 const float kMostCurvature = 1.0e3;  // 1/mm
-const float kMostOfEdges = 0.1;      // of the diffused irradiance
-const float kCurvatureReach = 0.25;  // of the thickness: a ball of 4 mm that is measured 3 mm to both sides ends there
+const float kMostOfEdges = 0.1;      // of the diffused irradiance. Measured: procedural shells of skin
+const float kRoundnessPower = 4.0;   // of the roundness, of the limit for balls. Measured: procedural shells of skin
+const float kCurvatureReach = 0.25;  // of the thickness, as longer ones end outside of balls. Measured: procedural balls of 2 mm radius
 
 // Thickness of the body at x, mm: of a slab seen at any angle, of a ball its diameter. kThick: not known, or the body is as good as
 // a half-space.
@@ -142,16 +143,16 @@ BodyFactors bodyAt(ivec2 pixel, Surface x, ViewRay ray, float front, uint m) {
   float h = thicknessAt(pixel, x), curvature = meanCurvature(pixel, x, ray, front, min(reach, kCurvatureReach * h));
   // Whatever depths and normals hold, the factors are finite.
   if (!isWithin(abs(curvature), 0.0, kMostCurvature)) curvature = 0.0;
-  if (h < 2.5 * lengths.z) {
+  if (h < 2.5 * lengths.z) { // 5 / kappa: beyond, a slab returns all but e^-10 of a half-space's light
     GatherSlab s = slabOf(m, lengths, h);
     vec3 t = exp2(s.logarithm - s.decay * h);
     [[unroll]] for (int c = 0; c < 3; ++c) body.returned[c] = keptReflectance(materials[m].gather.reflectance[c], t[c]);
   }
   Ball ball = ballAt(m, 2.0 / max(abs(curvature), 1.0 / kThick));
   // 1 where curvature and thickness are those of one ball; 1e-6: the inverse is finite.
-  float diameters = max(0.5 * h * curvature, 1.0e-6), round = min(diameters, 1.0 / diameters), square = round * round;
+  float diameters = max(0.5 * h * curvature, 1.0e-6), round = min(diameters, 1.0 / diameters);
   // Lids, lips and other edges of a large body have no more than a half-space's surroundings.
-  vec3 more = min(ball.returned + round * ball.instead, vec3(max(kMostOfEdges, square * square)));
+  vec3 more = min(ball.returned + round * ball.instead, vec3(max(kMostOfEdges, pow(round, kRoundnessPower))));
   // Concave surfaces return less, by as much as convex ones return more; where they curve strongly, other walls are near.
   body.returned += curvature < 0.0 ? -clamp(ball.returned, vec3(0.0), vec3(kMostOfEdges)) : more;
   body.through += round * ball.through;

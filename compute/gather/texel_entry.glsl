@@ -81,7 +81,7 @@ PixelSurface surfaceUnder(vec3 position, bool hidden) {
 }
 
 // Slope towards the camera from which a surface is a limb, whose few pixels do not show all of the light that enters: 63 degrees.
-// Without this end a sphere of 8 mm is off by a third more.
+// Measured: procedural balls of skin, radius 5 mm.
 const float kSteepestSeen = 2.0;
 
 // Cosine up to which a shown normal may turn away from the light that enters there: normals are interpolated, and texels reach
@@ -156,7 +156,7 @@ ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored
 
 // ---- Biases. Where the camera tells the surface, a texel's point is where its light ray meets the surface's plane
 
-// Largest slope of a surface towards the light: 87 degrees.
+// Largest slope of a surface towards the light: 87 degrees, where less than 5 % of the light comes in.
 const float kLeastAlong = 0.05;
 
 // The larger change of the stored device depth from texel to texel on a plane through a point, which the rasterizer's slope bias
@@ -171,7 +171,7 @@ float slopeOnPlane(EntryMapConstants map, vec3 position, vec3 normal) {
   return max(steps.x, steps.y);
 }
 
-// Of 329 texels of an engine's face between triangles that its bias moved apart, 36 remain after one step, 13 after two.
+// A bound on time: most texels need one step, and later steps change few.
 const int kMostAgain = 3;
 
 // Moves y along its light ray to the surface at its pixel, if y lies on that within what the map leaves open, whichever slope the bias

@@ -132,7 +132,7 @@ float lengthPerDepth(StoredRay ray, float stored) {
 // ---- What lies behind the surface that a map stores: the receiver's own medium, another body, or air. Functions take texels of
 // the optional images beside the map; see PellucidShadowMap.
 
-// depthTolerance ends here. Only light that grazes a face reaches it, at a cosine of .14, and only below .09 a receiver's
+// depthTolerance ends at the largest slope of one surface, kSteepest of base_level.comp: at a cosine of .14. Only below .09 a receiver's
 // own exit can be farther off than this. More would hide gaps: 8 texels of a head's map of 1024 texels are 1.8 mm.
 const float kMostTexels = 8.0;
 

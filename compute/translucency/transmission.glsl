@@ -280,10 +280,11 @@ float hiddenCosine(LightConstants light, Surface s, vec3 toLight) {
 
 // ---- Light through a sheet without thickness, from the face that is not seen
 
-// A plane's own texels lie within the tolerance down to a cosine of .045, where it stops to grow.
+// A plane's own texels lie within the tolerance down to a cosine of .045. Light that grazes more brings less than 5 %.
 const float kMostWallTexels = 32.0;
 const float kDiagonal = 1.41421356; // to the farthest of four texels
-// Normals may turn a face to the light that geometry turns away. Its light fades over this cosine.
+// Normals may turn a face to the light that geometry turns away. Its light fades over 6 degrees: facets of a round body of 30 sides
+// turn as far from its normals.
 const float kTurnedCosine = 0.1;
 
 // Part of the light that no other surface holds back. A texel that stores the sheet itself, what lies behind it, or nothing
@@ -325,7 +326,7 @@ HiddenFace hiddenFace(Surface s, ivec2 pixel) {
   vec3 facet = facetAt(pixel, s.material, true), front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
   float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
   // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
-  const float kPerCosine = 3.0;
+  const float kPerCosine = 3.0; // 1 / sin(20 degrees)
   float seen = min(kPerCosine * min(abs(dot(front, s.view)), abs(dot(back, s.view))), 1.0);
   return HiddenFace(s.position + s.chord * s.view, back, thickness, seen * (0.5 - 0.5 * dot(front, back)));
 }

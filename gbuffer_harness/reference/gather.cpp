@@ -137,8 +137,8 @@ constexpr double kTail = 1e-4;
 constexpr int kBlock = 16;
 // A surface seen more obliquely by the light than this counts as if it were not.
 constexpr double kLeastCosine = 0.2;
-// Slope of an exit's own surface across the light within a texel, at most: as of 76 degrees.
-constexpr double kSteepestOwn = 4;
+// Slope of an exit's own surface across the light within a texel, at most: that of kLeastCosine.
+const double kSteepestOwn = std::sqrt(1 - kLeastCosine * kLeastCosine) / kLeastCosine;
 // Texels: a point on a surface and the pixel that shows it are apart by the slope within them.
 constexpr double kSeenTolerance = 0.5;
 // A face that turns away from the light by more than 30 degrees is the other face of a thin part.
@@ -416,7 +416,7 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   for (const ShadowView& view : views_[light]) {
     const ShadowView::Lookup found = view.at(world);
     if (found.kind == ShadowView::Kind::Outside) continue;
-    place.tolerance = std::max(mm_ * found.texel * (2 + slope), 1e-12);
+    place.tolerance = std::max(mm_ * found.texel * (1 + slope), 1e-12);
     double arrives = 1;
     if (found.kind == ShadowView::Kind::Surface) {
       // None where the lit surface is further ahead than a texel's side makes of the slope.

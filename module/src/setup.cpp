@@ -23,6 +23,7 @@ const char* whyNot(const Inputs& inputs, bool solids) {
   return nullptr;
 }
 
+// At most 2^19 probes in frames of up to 3840 x 2160, so that their time hardly grows with the frame.
 uint32_t spacingOf(const PellucidFrame& frame) {
   if (frame.options.gatherSpacing != 0) return frame.options.gatherSpacing;
   const uint64_t pixels = static_cast<uint64_t>(frame.imageExtent[0]) * frame.imageExtent[1];
@@ -97,7 +98,7 @@ Setup::Setup(const Inputs& inputs)
   gatherSpacing = spacingOf(frame);
   gathers = translucency() && gatherSamples > 0 && !debug();
   shapes = gathers && diffuses;
-  constexpr float kEntriesPerLength = 2;
+  constexpr float kEntriesPerLength = 2;  // the fewest that resolve light which varies over a length
   longestEntrySide = shortestLength / (kEntriesPerLength * 1000 * frame.metersPerUnit);
 }
 

@@ -1,10 +1,17 @@
 // Checks or rewrites the tables of a document that are made from the code:
 //   pellucid_readme_tables --check|--update FILE TABLE
 // TABLE: inputs, README.md; features, docs/performance.md; errors, docs/accuracy.md; domains,
-// docs/materials.md, what values fields may have; stress, CONTRIBUTING.md, what must hold for random frames.
+// docs/materials.md, what values fields may have; stress, CONTRIBUTING.md, what must hold for random frames;
+// constants, docs/how-it-works.md, the constants that were measured.
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <regex>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "diffusion_error_table.h"
 #include "domains.h"
@@ -165,6 +172,64 @@ std::string stressTable() {
   return table;
 }
 
+// ---- Measured constants: those whose comment has "Measured: ", up to the comment's end or a period
+
+// Fitted numbers make a method hard to trust beyond the frames that they were fitted to.
+constexpr std::ptrdiff_t kMostMeasured = 25;
+
+struct MeasuredConstant {
+  std::string name, value, basis;
+};
+
+// Adds the measured constants of a file. A comment stands before its constant or on the constant's line.
+std::vector<MeasuredConstant> measuredIn(const std::filesystem::path& file) {
+  static const std::regex constant(
+      R"(^\s*(?:#define (\w+) (.+?)|(?:static )?const(?:expr)? \w+ (\w+) = (.+?);)\s*$)");
+  static const std::regex basis(R"(Measured: (.*?)(?:\.(?: .*)?)?$)");
+  std::vector<MeasuredConstant> found;
+  std::ifstream in(file);
+  std::string comment, line;
+  while (std::getline(in, line)) {
+    const size_t slashes = line.find("//");
+    const std::string code = line.substr(0, slashes);
+    if (slashes != std::string::npos)
+      comment += (comment.empty() ? "" : " ") + line.substr(std::min(slashes + 3, line.size()));
+    if (code.find_first_not_of(' ') == std::string::npos && slashes != std::string::npos) continue;
+    if (code.starts_with("#ifndef")) continue;  // a constant that the build may set
+    std::smatch match, measured;
+    if (std::regex_search(comment, measured, basis)) {
+      if (!std::regex_match(code, match, constant))
+        throw std::runtime_error(file.string() + ": no constant follows \"" + comment + '"');
+      const int name = match[1].matched ? 1 : 3;
+      found.push_back({match[name], match[name + 1], measured[1]});
+    }
+    comment.clear();
+  }
+  return found;
+}
+
+std::string constantsTable() {
+  namespace fs = std::filesystem;
+  const fs::path root = PELLUCID_SOURCE_DIR;
+  std::vector<fs::path> files;
+  for (const char* folder : {"compute", "module/src"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string table = "| constant | value | file | measured on |\n|-|-|-|-|\n";
+  std::ptrdiff_t values = 0;
+  for (const fs::path& file : files)
+    for (const MeasuredConstant& c : measuredIn(file)) {
+      values += 1 + std::count(c.value.begin(), c.value.end(), ',');
+      table += "| `" + c.name + "` | " + c.value + " | `" + fs::relative(file, root).generic_string() +
+               "` | " + c.basis + " |\n";
+    }
+  if (values > kMostMeasured)
+    throw std::runtime_error(std::to_string(values) + " values are measured, more than " +
+                             std::to_string(kMostMeasured) + ": derive some or drop them");
+  return table;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -172,16 +237,19 @@ int main(int argc, char** argv) {
     const char* name;
     std::string (*make)();
   };
-  constexpr Table tables[] = {{"inputs", imagesTable},
-                              {"features", featuresTable},
-                              {"errors", errorsTable},
-                              {"domains", domainsTable},
-                              {"stress", stressTable}};
+  constexpr Table tables[] = {{"inputs", imagesTable}, {"features", featuresTable},
+                              {"errors", errorsTable}, {"domains", domainsTable},
+                              {"stress", stressTable}, {"constants", constantsTable}};
   if (argc == 4)
     for (const Table& table : tables)
-      if (table.name == std::string(argv[3]))
-        return generatedBlock(argc - 1, argv + 1, table.name, table.make());
-  std::fputs("usage: pellucid_readme_tables --check|--update FILE inputs|features|errors|domains|stress\n",
-             stderr);
+      if (table.name == std::string(argv[3])) try {
+          return generatedBlock(argc - 1, argv + 1, table.name, table.make());
+        } catch (const std::exception& e) {
+          std::fprintf(stderr, "%s\n", e.what());
+          return 1;
+        }
+  std::fputs(
+      "usage: pellucid_readme_tables --check|--update FILE inputs|features|errors|domains|stress|constants\n",
+      stderr);
   return 2;
 }
