@@ -237,17 +237,20 @@ struct Transmitted {
 
 const Transmitted kNothingTransmitted = Transmitted(-1.0, vec3(0.0), 0.0, vec3(0.0));
 
+// Least part that a body is taken to return, so that a thin pixel beside a probe of a thick one is no dot.
+const float kLeastKept = 0.25;
+
 // Exitance of material m, besides what the irradiance image has. Most pixels face some lights; T is the expensive part.
 vec3 exitanceOf(Transmitted t, uint m) {
   vec3 entering = t.arriving * t.visible, any = max(entering, t.front);
   if (!(isWithin(t.thickness, 0.0, kMostFloat) && max(any.r, max(any.g, any.b)) > 0.0)) return vec3(0.0);
-  vec3 through = materialTransmittance(m, t.thickness * frame.camera.range.w), exitance = entering * through;
-  if (t.front != vec3(0.0)) {
-    vec3 kept;
-    for (int c = 0; c < 3; ++c) kept[c] = keptReflectance(materials[m].gather.reflectance[c], through[c]);
-    exitance -= (1.0 - kept) * t.front / materials[m].inverseReflectance.rgb;
-  }
-  return exitance;
+  vec3 through = materialTransmittance(m, t.thickness * frame.camera.range.w), exitance = entering * through, kept;
+  bool bodies = hasFlag(PELLUCID_FLAG_BODIES) && !isThinWalled(m + 1u);
+  if (!bodies && t.front == vec3(0.0)) return exitance;
+  for (int c = 0; c < 3; ++c) kept[c] = keptReflectance(materials[m].gather.reflectance[c], through[c]);
+  // Probes take for all irradiance that a thin body returns less of it, though this light is what they miss.
+  if (bodies) return exitance / max(kept, vec3(kLeastKept));
+  return exitance - (1.0 - kept) * t.front / materials[m].inverseReflectance.rgb;
 }
 
 // ---- Factors that stand for the cosine of the light on the hidden face, which the camera does not see. x is the cosine

@@ -90,9 +90,9 @@ protected:
   }
 };
 
-// Both evaluate the same functions of the same float depths. Two differences are left: the rounding of the
-// sum with the irradiance, and edges of shadows. At such edges the hidden face's slope decides how light
-// fades. The pass takes this slope from its triangle and the dispatch from depths.
+// Both evaluate the same functions of the same float depths. Differences are left: the rounding of the sum with the irradiance, and
+// the normal of the hidden face, which the pass takes from its triangle and the dispatch from depths. The thesis's models of angles take
+// no such normal: there it decides edges of shadows alone.
 TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
   ReplaySettings cosine = thesisSettings();
   cosine.transmittance = TransmittanceChoice::Gaussians;
@@ -113,8 +113,12 @@ TEST_F(Transmit, BackFacePassEqualsTheFusedDispatch) {
         .shadowSize = 256,
         .shadowEncoding = orthographic ? PELLUCID_DEPTH_DISTANCE : PELLUCID_DEPTH_DEVICE};
     const Difference d = difference(orthographic, options, settings);
-    EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
-    EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";
+    if (&settings == &kSettings[0].second) {
+      EXPECT_LE(d.difference, 0.08 * d.sum) << "6.8 %: triangles of the ball turn by some 10 degrees";
+    } else {
+      EXPECT_LE(d.apart, d.lit / 12) << "edges of three lights' shadows are up to 8 % of these few pixels";
+      EXPECT_LE(d.difference, 0.012 * d.sum) << "1.1 % is the worst";
+    }
     EXPECT_GT(d.lit, 300u);
     EXPECT_GT(d.peak, 0.05);
   }
