@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "reference/camera.h"
+#include "scene/light_table.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness::reference {
@@ -65,13 +66,6 @@ double coneFalloff(const Light& light, const glm::dvec3& toLight) {
   const double cosAngle = glm::dot(glm::normalize(toGlm(light.direction)), -toLight);
   const double t = std::clamp((cosAngle - cosOuter) * scale, 0.0, 1.0);
   return t * t;
-}
-
-// at: 0..1, between the first entry and the last.
-double factorAt(const std::vector<double>& table, double at) {
-  const double place = at * static_cast<double>(table.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(place), table.size() - 2);
-  return std::lerp(table[below], table[below + 1], place - static_cast<double>(below));
 }
 
 double distanceFalloff(const Light& light, double distance) {
