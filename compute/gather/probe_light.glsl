@@ -76,13 +76,27 @@ bool isInMap(uint map, vec2 place) {
   return all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(maps[map].place.zw)));
 }
 
-// Finds the first of the light's maps that contains the position. false: none does.
+// Finds the first of the light's maps that contains the position, or the nearest one beside a seam between maps, see kSeam. false:
+// none does. Then `point` is moved into the map's border.
 bool findMap(LightConstants light, vec3 position, out uint map, out vec3 point) {
-  for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
-    point = mapPoint(map, vec4(position, 1.0));
-    if (isInMap(map, placeInMap(directional(light), point))) return true;
+  bool parallel = directional(light), found = false;
+  float least = light.meta.z > 1u ? kSeam : -1.0;
+  map = light.meta.y;
+  point = vec3(0.0);
+  for (uint i = light.meta.y; i < light.meta.y + light.meta.z; ++i) {
+    vec3 there = mapPoint(i, vec4(position, 1.0));
+    vec2 place = placeInMap(parallel, there), size = vec2(maps[i].place.zw);
+    bool inside = isInMap(i, place);
+    float beyond = beyondMap(place, size);
+    if (!inside && !(beyond <= least)) continue;
+    if (!inside) there.xy = clamp(place, vec2(0.25), size - 0.25) * (parallel ? 1.0 : there.z);
+    found = true;
+    map = i;
+    point = there;
+    least = beyond;
+    if (inside) break;
   }
-  return false;
+  return found;
 }
 
 // Side of a map's entry points of level 0 at a probe, scene units. Behind a light it is negative, and only less than another.

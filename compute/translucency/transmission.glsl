@@ -128,7 +128,7 @@ DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
   return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
-// The four texels around a point in the first of the light's maps that contains it.
+// The four texels around a point in the first of the light's maps that contains it, or beside a seam between maps.
 struct LightTexels {
   vec4 weight;    // bilinear, of texels that have a surface where light enters the medium asked for; 0 of others
   vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
@@ -166,12 +166,18 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
 
 // x: a point on or behind a surface; cosine: between its normal and the light; 0: not known.
 LightTexels lightTexels(LightConstants light, Incident incident, uint material, vec3 x, float cosine, float farthest) {
+  uint found = light.meta.z;
+  float least = light.meta.z > 1u ? kSeam : 0.0;
   for (uint i = 0u; i < light.meta.z; ++i) {
-    ShadowConstants shadow = shadows[light.meta.y + i];
-    ShadowReceiver receiver = projectReceiver(shadow, x);
-    if (receiver.inside) return lightTexels(shadow, receiver, incident, material, x, cosine, farthest);
+    float beyond = projectReceiver(shadows[light.meta.y + i], x).beyond;
+    if (!(beyond <= least)) continue;
+    found = i;
+    least = beyond;
+    if (beyond <= 0.0) break;
   }
-  return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+  if (found == light.meta.z) return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+  ShadowConstants shadow = shadows[light.meta.y + found];
+  return lightTexels(shadow, projectReceiver(shadow, x), incident, material, x, cosine, farthest);
 }
 
 // The i-th of the four pixels beside a pixel: right, left, below, above.

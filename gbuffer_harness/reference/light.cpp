@@ -126,10 +126,24 @@ std::optional<ShadowView::Projected> ShadowView::project(const glm::dvec3& point
   if (!(clip.w > 0)) return std::nullopt;
   const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
   const Image& image = map_.depth.image;
-  const double px = std::floor((ndc.x * 0.5 + 0.5) * image.width);
-  const double py = std::floor((ndc.y * 0.5 + 0.5) * image.height);
-  if (!(px >= 0 && py >= 0 && px < image.width && py < image.height)) return std::nullopt;
-  return Projected{ndc, static_cast<int>(px), static_cast<int>(py)};
+  const double px = (ndc.x * 0.5 + 0.5) * image.width, py = (ndc.y * 0.5 + 0.5) * image.height;
+  const double beyond = std::max({-px, -py, px - image.width, py - image.height});
+  if (!(beyond <= kSeam)) return std::nullopt;
+  return Projected{ndc, std::clamp(static_cast<int>(std::floor(px)), 0, image.width - 1),
+                   std::clamp(static_cast<int>(std::floor(py)), 0, image.height - 1), beyond};
+}
+
+const ShadowView* ShadowView::find(const std::vector<ShadowView>& maps, const glm::dvec3& point) {
+  const ShadowView* nearest = nullptr;
+  double least = INFINITY;
+  for (const ShadowView& map : maps) {
+    const std::optional<Projected> p = map.project(point);
+    if (!p || (maps.size() == 1 && p->beyond > 0) || p->beyond >= least) continue;
+    nearest = &map;
+    least = p->beyond;
+    if (p->beyond <= 0) break;
+  }
+  return nearest;
 }
 
 // Whether a device depth is the end of 0..1 that lies away from the light, which the map was cleared to.

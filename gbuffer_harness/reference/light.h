@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "capture/capture.h"
 
@@ -56,11 +57,15 @@ public:
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
   };
-  // Nearest texel.
+  // The first of a light's maps that contains the point. A light of several maps has no seams: where none
+  // does, the nearest one does if the point is at most half a texel outside. nullptr: no map does.
+  static const ShadowView* find(const std::vector<ShadowView>& maps, const glm::dvec3& point);
+
+  // Nearest texel; of the border, at most half a texel outside.
   Lookup at(const glm::dvec3& point) const;
 
-  // The four texels around the point with their bilinear weights; nothing outside the map. In each texel, the
-  // drawn depth is as far off the stored one as in the nearest texel.
+  // The four texels around the point with their bilinear weights; nothing outside the map by more. In each
+  // texel, the drawn depth is as far off the stored one as in the nearest texel.
   struct Tap {
     double weight;
     Lookup found;
@@ -70,8 +75,10 @@ public:
 private:
   struct Projected {
     glm::dvec3 ndc;
-    int x, y;  // texel
+    int x, y;       // texel
+    double beyond;  // texels outside of the map, at most kSeam; not above 0 inside
   };
+  static constexpr double kSeam = 0.5;
   std::optional<Projected> project(const glm::dvec3& point) const;
   // As Lookup::distance, of a depth.
   double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;

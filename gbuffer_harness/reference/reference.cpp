@@ -150,9 +150,8 @@ private:
       forEachWanted("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
     }
     if (!capture_.albedo.empty())
-      forEachPixel("albedo", [&](int x, int y, std::size_t i) {
-        output[i] *= readColor(capture_.albedo.at(x, y));
-      });
+      forEachPixel("albedo",
+                   [&](int x, int y, std::size_t i) { output[i] *= readColor(capture_.albedo.at(x, y)); });
     result.image = toImage(output);
     return result;
   }

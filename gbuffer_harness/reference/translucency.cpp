@@ -134,9 +134,8 @@ bool Translucency::usesLightSpace(std::size_t light) const {
 
 std::optional<Translucency::Taps> Translucency::texelsAround(std::size_t light,
                                                              const glm::dvec3& point) const {
-  for (const ShadowView& map : shadows_[light])
-    if (const std::optional<Taps> taps = map.around(point)) return taps;
-  return std::nullopt;
+  const ShadowView* map = ShadowView::find(shadows_[light], point);
+  return map ? map->around(point) : std::nullopt;
 }
 
 // A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
