@@ -239,6 +239,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   }
   if (isShown) normal = shown.normal;
 
+  bool clamped = isClamped(map.meta, map.offsets, asDrawn);
   float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
   uint material = 0u;
   if (map.occluder.y != 0u) {
@@ -246,11 +247,12 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
     material = isWithin(index, 0.5, 255.5) ? uint(index + 0.5) : 0u;
     if (material == 0u) share = 0.0; // opaque, as is NaN
   }
+  if (clamped) share = 0.0; // light enters elsewhere
   float exit = kNoExit;
   if (map.occluder.x != 0u) {
     float exitStored = shadowTexel(map.occluder.x - 1u, inImage);
     MapPoint behind = pointOf(map, texel, exitStored);
-    if (shadowHolds(map.meta, exitStored) && abs(behind.depth) < kNoDepth)
+    if (!clamped && shadowHolds(map.meta, exitStored) && abs(behind.depth) < kNoDepth)
       exit = max(dot(y.position - behind.position, toLight) + map.offsets.z, 0.0); // the exit has no offset
   }
   float cosine = max(dot(normal, toLight), 0.0);

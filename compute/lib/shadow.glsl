@@ -63,6 +63,15 @@ bool shadowHolds(uvec4 meta, float stored) {
   return isWithin(stored, 0.0, kNoDepth) && stored != 0.0;
 }
 
+const float kNearRounding = 1.0e-7; // of device depths, besides the map's smallest step
+
+// True where the texel lies on the map's near plane. Engines clamp there what lies before it ("pancaking"): something nearer is lit,
+// and nobody knows where. meta, offsets: of ShadowConstants.
+bool isClamped(uvec4 meta, vec4 offsets, float stored) {
+  float near = 1.0 - uintBitsToFloat(meta.w); // the other end holds nothing
+  return meta.y == PELLUCID_SHADER_DEPTH_DEVICE && abs(stored - offsets.x - near) <= max(0.5 * offsets.w, kNearRounding);
+}
+
 // The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.
 struct DrawnDepth {
   float depth;

@@ -138,7 +138,8 @@ struct LightTexels {
 
 const float kEverywhere = 3.0e38;
 
-// `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight.
+// `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight;
+// kEverywhere: texels tell what holds light back, and not where light enters.
 LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, uint material, vec3 x, float cosine,
                         float farthest) {
   ShadowFootprint footprint = footprintOf(shadow, receiver);
@@ -157,7 +158,9 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
     float stored = texels[i];
     if (!shadowHolds(shadow.meta, stored)) continue;
     l.thickness[i] = lightThickness(ray, stored + drawn.depth) + shadow.offsets.z;
-    if (l.thickness[i] < farthest) l.weight[i] = footprint.weight[i];
+    // A clamped texel holds light back, but nobody knows the thickness before it.
+    bool unknown = material != 0u && farthest < kEverywhere && isClamped(shadow.meta, shadow.offsets, stored);
+    if (l.thickness[i] < farthest && !unknown) l.weight[i] = footprint.weight[i];
     l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(ray, stored));
   }
   if (material != 0u && l.weight != vec4(0.0)) l.weight *= entersMedium(shadow, footprint, ray, material, depthTolerance(l.side, cosine));

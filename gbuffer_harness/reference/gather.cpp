@@ -26,6 +26,8 @@ public:
   std::optional<glm::dvec3> at(int x, int y) const;
   // The point of the texel's ray that has a depth in the map's encoding.
   std::optional<glm::dvec3> at(int x, int y, float stored) const;
+  // True where it lies on the near plane, where light enters elsewhere.
+  bool clamped(int x, int y) const;
   // Scene units along the light's ray that the texel's surface may be off by.
   double uncertain(int x, int y) const;
 
@@ -88,6 +90,10 @@ bool ShadowTexels::holds(float stored) const {
 
 DrawnDepth ShadowTexels::drawn(int x, int y) const {
   return drawnDepth(map_, x, y, [this](float stored) { return holds(stored); });
+}
+
+bool ShadowTexels::clamped(int x, int y) const {
+  return isClamped(map_, nothing_, *map_.depth.image.at(x, y));
 }
 
 std::optional<glm::dvec3> ShadowTexels::at(int x, int y) const {
@@ -274,6 +280,7 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
               static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
           const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
           if (!map.casterMaterial.empty() && of == 0) continue;
+          if (texels.clamped(x, y)) continue;
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
@@ -423,7 +430,7 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
     if (found.kind == ShadowView::Kind::Surface) {
       // None where the lit surface is further ahead than a texel's side makes of the slope.
       arrives = std::clamp(2 - found.distance / (found.texel * (1 + slope)), 0.0, 1.0);
-      const double behind = mm_ * std::max(found.fromExit.value_or(0), 0.0);
+      const double behind = found.clamped ? 0 : mm_ * std::max(found.fromExit.value_or(0), 0.0);
       place.shadowed = std::clamp(behind / place.tolerance - 1, 0.0, 1.0);
       place.behind = behind * glm::dot(place.axis, place.toLight);
     }
@@ -454,7 +461,9 @@ double Gather::pathInside(const glm::dvec3& to, const Exit& exit, const Place& p
   const ShadowView* view = ShadowView::find(*place.views, on);
   if (!view) return 1;
   const ShadowView::Lookup found = view->at(on);
-  if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.casterMaterial == 0) return 1;
+  if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.clamped ||
+      found.casterMaterial == 0)
+    return 1;
   return 1 - std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
 }
 

@@ -52,6 +52,12 @@ DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bo
           map.depthStep / 2 + std::abs(bias) * (map.depthStep + missed)};
 }
 
+bool isClamped(const ShadowMap& map, float nothing, float stored) {
+  if (map.depth.encoding != PELLUCID_DEPTH_DEVICE) return false;
+  return std::abs(double(stored) - map.depthBiasConstant - (1 - double(nothing))) <=
+         std::max(map.depthStep / 2, 1e-7);
+}
+
 namespace {
 
 double rangeWindow(double distance, double range) {
@@ -146,18 +152,16 @@ const ShadowView* ShadowView::find(const std::vector<ShadowView>& maps, const gl
   return nearest;
 }
 
-// Whether a device depth is the end of 0..1 that lies away from the light, which the map was cleared to.
-bool ShadowView::isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const {
+float ShadowView::farEnd(const glm::dvec3& point, const glm::dvec3& travel) const {
   const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
   const glm::dvec4 along = clipFromWorld_ * glm::dvec4(travel, 0);
-  const bool grows = along.z * clip.w - along.w * clip.z > 0;
-  return stored == (grows ? 1.0f : 0.0f);
+  return along.z * clip.w - along.w * clip.z > 0 ? 1.0f : 0.0f;
 }
 
 bool ShadowView::holds(const glm::dvec3& point, float stored) const {
   if (map_.depth.encoding != PELLUCID_DEPTH_DEVICE) return holdsSurface(stored);
   const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
-  return stored >= 0 && stored <= 1 && !isFarEnd(point, travel, stored);
+  return stored >= 0 && stored <= 1 && stored != farEnd(point, travel);
 }
 
 double ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const {
@@ -221,6 +225,8 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
   const float stored = *map_.depth.image.at(x, y);
   if (!holds(point, stored)) return found;
   found.kind = Kind::Surface;
+  found.clamped = map_.depth.encoding == PELLUCID_DEPTH_DEVICE &&
+                  isClamped(map_, farEnd(point, -arrivalAt(light_, point).toLight), stored);
   const auto lengthOf = [&](double depth, double step) {
     return std::abs(distanceFrom(point, p, depth + step) - distanceFrom(point, p, depth));
   };

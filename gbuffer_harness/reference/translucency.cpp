@@ -164,7 +164,7 @@ double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiv
                                   const glm::dvec3& toLight) const {
   constexpr double kTurned = 0.5;
   const double facing = glm::dot(r.normal, toLight);
-  if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
+  if (lookup.clamped || !entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
   if (isOpaque(*r.medium, std::max(0.0, lookup.distance * surfaces_.millimetersPerUnit()))) return 0;
   const double tolerance =
       (ownTolerance(lookup, facing) + lookup.uncertain) * std::clamp(1 + facing / kTurned, 0.0, 1.0);

@@ -171,6 +171,36 @@ TEST_F(Gather, LightEntersThroughTheReceiversMaterialOnly) {
   }
 }
 
+// Depths that an engine clamped to a near plane within the slab do not say where light enters: none comes
+// through, with biases and reversed depth, too. A surface just behind the near plane is one.
+TEST_F(Gather, ClampedDepthsLetNoLightThrough) {
+  for (const std::uint32_t samples : {0u, 8u})
+    for (const bool reversed : {false, true})
+      for (const double bias : {0.0, 0.01}) {
+        const auto lit = [&](double depth, bool hasExit) {
+          Capture c = flatCapture(32, 32, 4);
+          c.lights = {backLight()};
+          ShadowMap map = flatShadowMap(-11, PELLUCID_DEPTH_DEVICE);
+          map.clipFromWorld[10] = reversed ? -0.01 : 0.01;
+          map.clipFromWorld[14] = reversed ? 1 - 0.11 : 0.11;  // near plane at -11; the slab ends at -14
+          map.depthBiasConstant = reversed ? -bias : bias;
+          const double stored = reversed ? 1 - depth : depth;
+          std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),
+                    static_cast<float>(depth < 1 ? stored + map.depthBiasConstant : stored));
+          if (hasExit) map.exitDepth = Image(32, 32, 1, static_cast<float>(stored));
+          c.lights[0].shadowMaps = {map};
+          return replay(c, skin(), gathering(samples));
+        };
+        const Image nothing = lit(1, false);
+        for (const bool hasExit : {false, true})
+          EXPECT_LT(relativeRmse(lit(0, hasExit), nothing), 1e-3)
+              << samples << " reversed " << reversed << " bias " << bias << " exit " << hasExit;
+        // A tenth of a mm behind the near plane.
+        EXPECT_GT(lit(0.001, false).at(16, 16)[0], 1.5f * nothing.at(16, 16)[0])
+            << samples << " reversed " << reversed << " bias " << bias;
+      }
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less
