@@ -123,7 +123,8 @@ struct GatherRings {
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
   float entrySide;     // of the map's entry points of the level
   float perQuad;       // 1 / side of the quad of level 1 at x, facing the camera
-  float ahead;         // along the light's ray from x to the lit surface
+  float ahead;         // along the light's ray from x to what the light meets
+  float nearest;       // likewise, to where it enters a medium beside x
   float tolerance;     // how far a receiver's own exit may be off
   float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
   float shadowed;      // 1: that ray has left the medium before x, for air or an opaque body in it, 0: it has not
@@ -134,6 +135,21 @@ struct GatherRings {
 // Level that the probe of the rings reads of any map.
 int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
+}
+
+// An entry point beside an opaque one that is not opaque: single texels of hair hide the surface around them. Else the opaque one.
+uvec4 besideHair(uint map, vec2 place, int level, uvec4 bits) {
+  const int kPlaces = 12; // 4 beside, 4 at the corners, 4 two away
+  vec2 size = vec2(maps[map].place.zw);
+  [[dont_unroll]] for (int i = 0; i < kPlaces && isOpaque(bits); ++i) {
+    int side = 1 - (i & 2);
+    ivec2 away = (i & 1) == 0 ? ivec2(side, 0) : ivec2(0, side);
+    if (i >= 8) away *= 2;
+    else if (i >= 4) away = ivec2(side, 2 * (i & 1) - 1);
+    uvec4 beside = entryAt(map, clamp(place + vec2(away << level), vec2(0.25), size - 0.25), level);
+    if (holdsSurface(beside) && !isOpaque(beside)) bits = beside;
+  }
+  return bits;
 }
 
 const float kSteepestOwn = 4.0; // largest slope of the surface at x within an entry point: 76 degrees
@@ -148,12 +164,13 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
   rings.perQuad = 0.5 / max(pixelSize(frame.camera, x.position.z * frame.camera.range.x).x, 1.0e-30);
-  rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
+  rings.t = rings.ahead = rings.nearest = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
   rings.level = levelOf(light, rings.map, x.position);
   rings.entrySide = entrySide(light, rings.map, x.position) * mm * float(1 << rings.level);
-  uvec4 bits = entryAt(rings.map, placeInMap(parallel, point), rings.level);
+  vec2 place = placeInMap(parallel, point);
+  uvec4 bits = entryAt(rings.map, place, rings.level);
   // The slope of the surface counts within an entry point, and one entry point stands for its curvature.
   rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
@@ -162,12 +179,15 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.ahead = distanceAhead(parallel, own.depth, point.z) * perAhead * mm;
   if (own.exit < kNoExit) rings.behindExit = max(rings.ahead - own.exit * mm, 0.0);
   rings.shadowed = clamp(rings.behindExit / rings.tolerance - 1.0, 0.0, 1.0);
-  float t = clamp(rings.ahead, 0.0, longest) / mm;
+  rings.nearest = rings.ahead;
+  if (isOpaque(bits))
+    rings.nearest = distanceAhead(parallel, unpackEntry(besideHair(rings.map, place, rings.level, bits)).depth, point.z) * perAhead * mm;
+  float t = clamp(rings.nearest, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
   bool inside = findMap(light, guess, map, point);
   bits = inside ? entryAt(map, placeInMap(parallel, point), levelOf(rings, light, map, x.position)) : kNoEntry;
-  if (holdsSurface(bits)) {
+  if (holdsSurface(bits) && !isOpaque(bits)) {
     vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
                          (parallel ? toLight : light.position.xyz - guess);
     t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
@@ -356,7 +376,7 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, BodyF
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);
-  if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
+  if (own == 0.0 && rings.nearest > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
   Gathered g = gatherSamples(m, light, x, pattern, incident.toLight, rings);
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb * body.through;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);

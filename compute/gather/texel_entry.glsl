@@ -103,35 +103,57 @@ bool cameraSees(Shown s, vec3 normal, float tolerance, float uncertain) {
 
 // ---- What the map's neighbors say
 
+const float kSquaredEdge = 4.0;  // squared steps across the light; a step less steep than 60 degrees is no edge
+const float kSquaredHair = 64.0; // what lies nearer by 8 texels may be hair; folds of the surface lie nearer by less
+
+const int kHairReach = 3; // texels
+
+// One texel's step along an axis from y, where both neighbors store what is nearer to the light: single texels of hair, as alpha
+// hashing and dithering draw them. The next texels of y's own surface tell, or the surface faces the light. `across`: of a texel.
+vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec3 across, float squaredStep) {
+  [[dont_unroll]] for (int i = 2; i < 2 * kHairReach; ++i) {
+    int away = (i >> 1) + 1, side = (1 - 2 * (i & 1)) * away;
+    ivec2 neighbor = texel + side * axis;
+    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
+    float theirs = shadowTexel(map.meta.x, firstTexel(map.occluder) + neighbor);
+    if (!shadowHolds(map.meta, theirs)) continue;
+    vec3 toward = (pointOf(map, neighbor, theirs - map.offsets.x).position - y.position) / float(side);
+    if (dot(toward, toward) < kSquaredEdge * squaredStep) return toward;
+  }
+  return across;
+}
+
 // One texel's step along an axis of the map from y, towards whichever neighbor is nearer, because the other may lie across an
-// edge. `stored`: of the neighbors forwards and backwards; `squaredStep`: of a texel across the light.
-vec3 entrySlope(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored, float squaredStep) {
+// edge. `stored`: of the neighbors forwards and backwards; `across`: a texel's step at the depth of y.
+vec3 entrySlope(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 stored, vec3 across) {
   vec3 best = vec3(0.0);
-  float least = 3.0e38;
+  float least = 3.0e38, squaredStep = dot(across, across);
+  int nearer = 0;
   for (int i = 0; i < 2; ++i) {
     int side = 1 - 2 * i;
     ivec2 neighbor = texel + side * axis;
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
     float theirs = i == 0 ? stored.x : stored.y;
     if (!shadowHolds(map.meta, theirs)) continue;
-    vec3 toward = float(side) * (pointOf(map, neighbor, theirs).position - y);
+    MapPoint there = pointOf(map, neighbor, theirs);
+    vec3 toward = float(side) * (there.position - y.position);
     float squared = dot(toward, toward);
     if (squared < least) {
       least = squared;
       best = toward;
     }
-    // A step less steep than 60 degrees is no edge.
-    if (squared < 4.0 * squaredStep) break;
+    if (squared < kSquaredEdge * squaredStep) break;
+    if (squared < kSquaredHair * squaredStep) continue;
+    nearer += (map.meta.z == 0u ? there.depth > y.depth : there.depth < y.depth) ? 1 : 0;
   }
-  return best;
+  return nearer == 2 ? slopeBetweenHair(map, texel, y, axis, across, squaredStep) : best;
 }
 
 // Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
 vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
-  float scale = map.meta.z == 0u ? 1.0 : y.depth * y.depth;
-  float squareX = scale * dot(map.stepX.xyz, map.stepX.xyz), squareY = scale * dot(map.stepY.xyz, map.stepY.xyz);
-  vec3 normal = cross(entrySlope(map, texel, y.position, ivec2(1, 0), beside.xy, squareX),
-                      entrySlope(map, texel, y.position, ivec2(0, 1), beside.zw, squareY));
+  float scale = map.meta.z == 0u ? 1.0 : y.depth;
+  vec3 normal = cross(entrySlope(map, texel, y, ivec2(1, 0), beside.xy, scale * map.stepX.xyz),
+                      entrySlope(map, texel, y, ivec2(0, 1), beside.zw, scale * map.stepY.xyz));
   float squared = dot(normal, normal);
   if (!(squared > 0.0)) return toLight;
   return normal * (dot(normal, toLight) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
@@ -239,15 +261,15 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   }
   if (isShown) normal = shown.normal;
 
-  bool clamped = isClamped(map.meta, map.offsets, asDrawn);
+  bool clamped = isClamped(map.meta, map.offsets, asDrawn), opaque = clamped;
   float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
   uint material = 0u;
   if (map.occluder.y != 0u) {
     float index = shadowTexel(map.occluder.y - 1u, inImage) * uintBitsToFloat(map.occluder.z);
     material = isWithin(index, 0.5, 255.5) ? uint(index + 0.5) : 0u;
-    if (material == 0u) share = 0.0; // opaque, as is NaN
+    opaque = opaque || material == 0u; // as is NaN
   }
-  if (clamped) share = 0.0; // light enters elsewhere
+  if (opaque) share = 0.0;
   float exit = kNoExit;
   if (map.occluder.x != 0u) {
     float exitStored = shadowTexel(map.occluder.x - 1u, inImage);
@@ -259,7 +281,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
   // Without diffusion what the camera sees stays where it is.
   float seenShare = seen && hasFlag(PELLUCID_FLAG_DIFFUSED) ? share : 0.0;
-  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material));
+  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material, opaque));
 }
 
 #endif

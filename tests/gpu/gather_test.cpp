@@ -201,6 +201,43 @@ TEST_F(Gather, ClampedDepthsLetNoLightThrough) {
       }
 }
 
+// Alpha-hashed hair in front of a slab lit from behind, as opaque texels in all encodings: light is what the free texels let by.
+TEST_F(Gather, SingleTexelsOfHairArePartialShadow) {
+  constexpr int kTexels = 256;
+  for (const auto& [encoding, away, covered] : {std::tuple(PELLUCID_DEPTH_VIEW_Z, 10.0f, 0.5),
+                                                {PELLUCID_DEPTH_DEVICE, 30.0f, 0.75},
+                                                {PELLUCID_DEPTH_DISTANCE, 30.0f, 0.25}}) {
+    Capture c = flatCapture(48, 48, 4);
+    std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+    c.lights = {backLight()};
+    ShadowMap map = flatShadowMap(-14, encoding, kTexels);
+    map.clipFromWorld[0] = map.clipFromWorld[5] = 1.0 / 20;  // texels of .16 mm
+    const float perUnit = encoding == PELLUCID_DEPTH_DEVICE ? 0.01f : 1.0f;
+    map.exitDepth = Image(kTexels, kTexels, 1, map.depth.image.data[0] + 4 * perUnit);
+    map.casterMaterial.assign(map.depth.image.pixels(), 1);
+    const auto light = [&] {
+      c.lights[0].shadowMaps = {map};
+      const Image out = replay(c, skin(), gathering(8));
+      double sum = 0;
+      for (int y = 8; y < 40; ++y)
+        for (int x = 8; x < 40; ++x) sum += double(out.at(x, y)[0]);
+      return sum;
+    };
+    const double bare = light();
+    std::uint32_t state = 1;
+    int hair = 0;
+    for (std::size_t i = 0; i < map.depth.image.pixels(); ++i) {
+      state = 1664525u * state + 1013904223u;  // Numerical Recipes
+      if ((state >> 8) / double(1 << 24) >= covered) continue;
+      ++hair;
+      map.depth.image.data[i] -= away * perUnit;
+      map.exitDepth.data[i] = map.depth.image.data[i] + 0.1f * perUnit;
+      map.casterMaterial[i] = 0;
+    }
+    EXPECT_NEAR(light() / bare, 1 - hair / double(map.depth.image.pixels()), 0.04) << encoding;
+  }
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less
