@@ -75,6 +75,16 @@ BackFace backAt(ivec2 pixel) {
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 
+// Back face one pixel away, or two where a pixel of hair lies between.
+BackFace backBeside(ivec2 pixel, ivec2 axis) {
+  BackFace back;
+  [[dont_unroll]] for (int away = 1; away <= 2; ++away) {
+    back = backAt(pixel + away * axis);
+    if (back.chord > 0.0) break;
+  }
+  return back;
+}
+
 // Steps across and along the image on the back face, to the nearer side each, because the other may lie across an edge. `chord` grows
 // to the lesser of both sides' chords: a crease of a pixel's width, whose back face lies close, is no thin body. False: one is not known.
 bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
@@ -82,7 +92,7 @@ bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
   steps[1] = vec3(0.0);
   [[dont_unroll]] for (int i = 0; i < 2; ++i) {
     ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1);
-    BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
+    BackFace f = backBeside(pixel, axis), b = backBeside(pixel, -axis);
     vec3 forward = f.position - back, backward = back - b.position;
     steps[0] = steps[1];
     steps[1] = f.chord > 0.0 && !(b.chord > 0.0 && dot(backward, backward) < dot(forward, forward)) ? forward : backward;

@@ -48,17 +48,36 @@ struct Shown {
   float above;  // how far the point lies before the surface, along its normal
 };
 
+// Planar distance of the skin that goes on under a pixel of hair, as alpha hashing and dithering draw it: pixels to both sides hold
+// one material, farther away than the hair. -1: none; `beside`: one of the two.
+float frontUnderHair(ivec2 pixel, float hair, out ivec2 beside, out uint material) {
+  beside = pixel;
+  material = 0u;
+  [[dont_unroll]] for (int i = 0; i < 2 && hair > 0.0; ++i) {
+    ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1), next = pixel + axis, last = pixel - axis;
+    if (!insideRect(next) || !insideRect(last)) continue;
+    float a = frontDistance(inImage(next)), b = frontDistance(inImage(last));
+    beside = next;
+    material = materialAt(inImage(next));
+    if (material != 0u && material == materialAt(inImage(last)) && min(a, b) > hair) return 0.5 * (a + b);
+  }
+  return -1.0;
+}
+
 Shown shownAt(vec3 position) {
   Shown s = Shown(ivec2(0), position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
   ivec2 pixel;
   if (!projectToPixel(frame.camera, position, pixel) || !insideRect(pixel)) return s;
   s.pixel = pixel;
-  // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused.
+  // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused. The light of skin under single
+  // pixels of hair is, as pixels around stand for them.
   uint material = materialAt(inImage(pixel));
   float front = frontDistance(inImage(pixel));
+  ivec2 of = pixel;
+  if (material == 0u) front = frontUnderHair(pixel, front, of, material);
   if (material == 0u || !(front > 0.0)) return s;
   s.front = front;
-  s.normal = normalOfPixel(pixel, front, material);
+  s.normal = normalOfPixel(of, front, material);
   ViewRay ray = viewRay(frame.camera, pixel);
   s.above = dot(s.normal, position - ray.origin - s.front * ray.direction);
   return s;

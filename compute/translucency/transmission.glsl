@@ -192,8 +192,16 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
 // Unit normal of the front or back depths, towards the eye; 0: not known.
 vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
-  return normalOfDepths(frame.camera, inLattice(pixel), distanceOf(pixel, material, back), beside);
+  float own = distanceOf(pixel, material, back);
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 next = pixelBeside(pixel, i);
+    beside[i] = distanceOf(next, material, back);
+    if (beside[i] > 0.0) continue;
+    // Single pixels of hair lie between pixels of the surface.
+    float beyond = distanceOf(pixelBeside(next, i), material, back);
+    if (beyond > 0.0) beside[i] = mix(own, beyond, 0.5);
+  }
+  return normalOfDepths(frame.camera, inLattice(pixel), own, beside);
 }
 
 // The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: along the view ray,
