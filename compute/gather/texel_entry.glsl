@@ -48,20 +48,25 @@ struct Shown {
   float above;  // how far the point lies before the surface, along its normal
 };
 
-// Planar distance of the skin that goes on under a pixel of hair, as alpha hashing and dithering draw it: pixels to both sides hold
-// one material, farther away than the hair. -1: none; `beside`: one of the two.
-float frontUnderHair(ivec2 pixel, float hair, out ivec2 beside, out uint material) {
+// Planar distance of the surface that goes on under a pixel of hair, as alpha hashing and dithering draw it: the pixels to both sides
+// have one material. Of two axes the less steep one counts. -1: none. `beside`: one of the two pixels.
+float frontUnderHair(ivec2 pixel, out ivec2 beside, out uint material) {
+  float front = -1.0, least = kNoDepth;
   beside = pixel;
   material = 0u;
-  [[dont_unroll]] for (int i = 0; i < 2 && hair > 0.0; ++i) {
+  [[dont_unroll]] for (int i = 0; i < 2; ++i) {
     ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1), next = pixel + axis, last = pixel - axis;
     if (!insideRect(next) || !insideRect(last)) continue;
+    uint theirs = materialAt(inImage(next));
+    if (theirs == 0u || theirs != materialAt(inImage(last))) continue;
     float a = frontDistance(inImage(next)), b = frontDistance(inImage(last));
+    if (!(min(a, b) > 0.0) || !(abs(a - b) < least)) continue;
+    least = abs(a - b);
     beside = next;
-    material = materialAt(inImage(next));
-    if (material != 0u && material == materialAt(inImage(last)) && min(a, b) > hair) return 0.5 * (a + b);
+    material = theirs;
+    front = 0.5 * (a + b);
   }
-  return -1.0;
+  return front;
 }
 
 Shown shownAt(vec3 position) {
@@ -74,7 +79,7 @@ Shown shownAt(vec3 position) {
   uint material = materialAt(inImage(pixel));
   float front = frontDistance(inImage(pixel));
   ivec2 of = pixel;
-  if (material == 0u) front = frontUnderHair(pixel, front, of, material);
+  if (material == 0u && front > 0.0) front = frontUnderHair(pixel, of, material);
   if (material == 0u || !(front > 0.0)) return s;
   s.front = front;
   s.normal = normalOfPixel(of, front, material);

@@ -238,6 +238,47 @@ TEST_F(Gather, SingleTexelsOfHairArePartialShadow) {
   }
 }
 
+// Hair in every second pixel, as a checkerboard, over a tilted slab that is lit from before and behind: the skin between stays.
+TEST_F(Gather, SkinBetweenPixelsOfHairStays) {
+  constexpr int kSide = 48, kTexels = 192;
+  const auto front = [](double x) { return 12 + 0.5 * x; };
+  Capture c = flatCapture(kSide, kSide, 4);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const double z = front(((x + 0.5) / kSide * 2 - 1) * kSide / 8);
+      *c.frontDepth.image.at(x, y) = static_cast<float>(z);
+      *c.backDepth.image.at(x, y) = static_cast<float>(z + 4);
+    }
+  Light before = backLight(), behind = backLight();
+  before.direction = {0, 0, -1};
+  before.intensity = 1;
+  ShadowMap map;
+  map.clipFromWorld = kIdentity;
+  map.clipFromWorld[0] = map.clipFromWorld[5] = 1.0 / 16;
+  map.clipFromWorld[10] = -0.01;
+  map.depth = {Image(kTexels, kTexels, 1), PELLUCID_DEPTH_DEVICE};
+  for (int y = 0; y < kTexels; ++y)
+    for (int x = 0; x < kTexels; ++x)
+      *map.depth.image.at(x, y) = static_cast<float>(front(((x + 0.5) / kTexels * 2 - 1) * 16) / 100);
+  before.shadowMaps = {map};
+  c.lights = {before, behind};
+  Capture hairy = c;
+  std::vector<std::uint8_t> skinPixels(c.material.size());
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const auto i = static_cast<std::size_t>(y * kSide + x);
+      const bool within = std::min({x, y, kSide - 1 - x, kSide - 1 - y}) > 3;
+      skinPixels[i] = (x + y) % 2 != 0 && within;
+      if ((x + y) % 2 != 0) continue;
+      hairy.material[i] = 0;
+      hairy.frontDepth.image.data[i] -= 8;
+      for (std::size_t k = 0; k < 3; ++k) hairy.irradiance.data[3 * i + k] = 0;
+    }
+  for (const std::uint32_t samples : {0u, 8u})
+    EXPECT_LT(relativeRmse(replay(hairy, skin(), gathering(samples)), replay(c, skin(), gathering(samples)), skinPixels), 0.04)
+        << samples;
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less
