@@ -126,6 +126,7 @@ void listEntryGroups(uint map, uint block, int row, float nearest, float farthes
   EntriesInReach reach = entriesInReach(map, block, nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(reach.entries))) reach = EntriesInReach(vec4(vec2(0.0), vec2(last)), ivec2(0, PELLUCID_ENTRY_LEVELS - 1));
+  reach.entries += vec4(-1.0, -1.0, 1.0, 1.0); // probes beside a seam read the border
   // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
   ivec4 within = ivec4(floor(clamp(reach.entries, vec4(-1.0), vec4(last + 1, last + 1))));
   if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;

@@ -85,12 +85,20 @@ float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
 
 const float kLargestHalf = 65504.0;
 
-// Finite and >= 0. Bits say what is above 0 and no NaN, because compilers may take for granted that floats are none. No
-// function loops over components: compilers keep dynamically indexed vectors in memory.
-vec3 sanitize(vec3 v) {
-  const uint kInfinity = 0x7F800000u;
-  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), lessThan(floatBitsToUint(v) - 1u, uvec3(kInfinity)));
+// v of bits in (0, end), at most the largest half; 0 elsewhere. Bits say what is above 0 and no NaN, because compilers may take for
+// granted that floats are none. No function loops over components: compilers keep dynamically indexed vectors in memory.
+vec3 positive(vec3 v, uint end) {
+  return mix(vec3(0.0), min(v, vec3(kLargestHalf)), lessThan(floatBitsToUint(v) - 1u, uvec3(end - 1u)));
 }
+
+const uint kInfinity = 0x7F800000u;
+
+// What an image holds, finite and >= 0. Infinity is a half that overflowed, and counts as 0, as NaN does: as the largest half it
+// would light all skin around.
+vec3 sanitize(vec3 v) { return positive(v, kInfinity); }
+
+// A color that no other pixel reads, or what is computed: infinity is only large.
+vec3 limited(vec3 v) { return positive(v, kInfinity + 1u); }
 
 // v rounded to the nearest half, ties up; v >= 0. Image stores may truncate (Vulkan leaves it open), which darkens by up
 // to 1e-3 a pass. Every device stores a half as it is.
@@ -112,7 +120,7 @@ bool adds(bool last) { return last && hasFlag(PELLUCID_FLAG_ADDS); }
 // `color` with alpha, on top of what the output holds.
 vec4 onHeld(ivec2 at, vec3 color) {
   vec4 held = texelFetch(heldImage, at, 0);
-  return vec4(sanitize(sanitize(held.rgb) + color), held.a);
+  return vec4(limited(limited(held.rgb) + color), held.a);
 }
 
 void writeResult(ivec2 at, vec3 color, float alpha, bool last) {

@@ -79,13 +79,27 @@ bool isInMap(uint map, vec2 place) {
   return all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(maps[map].place.zw)));
 }
 
-// Finds the first of the light's maps that contains the position. false: none does.
+// Finds the first of the light's maps that contains the position, or the nearest one beside a seam between maps, see kSeam. false:
+// none does. Then `point` is moved into the map's border.
 bool findMap(LightConstants light, vec3 position, out uint map, out vec3 point) {
-  for (map = light.meta.y; map < light.meta.y + light.meta.z; ++map) {
-    point = mapPoint(map, vec4(position, 1.0));
-    if (isInMap(map, placeInMap(directional(light), point))) return true;
+  bool parallel = directional(light), found = false;
+  float least = light.meta.z > 1u ? kSeam : -1.0;
+  map = light.meta.y;
+  point = vec3(0.0);
+  for (uint i = light.meta.y; i < light.meta.y + light.meta.z; ++i) {
+    vec3 there = mapPoint(i, vec4(position, 1.0));
+    vec2 place = placeInMap(parallel, there), size = vec2(maps[i].place.zw);
+    bool inside = isInMap(i, place);
+    float beyond = beyondMap(place, size);
+    if (!inside && !(beyond <= least)) continue;
+    if (!inside) there.xy = clamp(place, vec2(0.25), size - 0.25) * (parallel ? 1.0 : there.z);
+    found = true;
+    map = i;
+    point = there;
+    least = beyond;
+    if (inside) break;
   }
-  return false;
+  return found;
 }
 
 // Side of a map's entry points of level 0 at a probe, scene units. Behind a light it is negative, and only less than another.
@@ -112,7 +126,8 @@ struct GatherRings {
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
   float entrySide;     // of the map's entry points of the level
   float perQuad;       // 1 / side of the quad of level 1 at x, facing the camera
-  float ahead;         // along the light's ray from x to the lit surface
+  float ahead;         // along the light's ray from x to what the light meets
+  float nearest;       // likewise, to where it enters a medium beside x
   float tolerance;     // how far a receiver's own exit may be off
   float behindExit;    // along the light's ray from where x's own ray has left the medium to x; 0: it has not
   float shadowed;      // 1: that ray has left the medium before x, for air or an opaque body in it, 0: it has not
@@ -123,6 +138,21 @@ struct GatherRings {
 // Level that the probe of the rings reads of any map.
 int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
+}
+
+// An entry point beside an opaque one that is not opaque: single texels of hair hide the surface around them. Else the opaque one.
+uvec4 besideHair(uint map, vec2 place, int level, uvec4 bits) {
+  const int kPlaces = 12; // 4 beside, 4 at the corners, 4 two away
+  vec2 size = vec2(maps[map].place.zw);
+  [[dont_unroll]] for (int i = 0; i < kPlaces && isOpaque(bits); ++i) {
+    int side = 1 - (i & 2);
+    ivec2 away = (i & 1) == 0 ? ivec2(side, 0) : ivec2(0, side);
+    if (i >= 8) away *= 2;
+    else if (i >= 4) away = ivec2(side, 2 * (i & 1) - 1);
+    uvec4 beside = entryAt(map, clamp(place + vec2(away << level), vec2(0.25), size - 0.25), level);
+    if (holdsSurface(beside) && !isOpaque(beside)) bits = beside;
+  }
+  return bits;
 }
 
 const float kSteepestOwn = 4.89897949; // largest slope of the surface at x within an entry point: that of kLeastCosine, 78 degrees
@@ -137,12 +167,13 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
   rings.perQuad = 0.5 / max(pixelSize(frame.camera, x.position.z * frame.camera.range.x).x, 1.0e-30);
-  rings.t = rings.ahead = rings.behindExit = rings.shadowed = 0.0;
+  rings.t = rings.ahead = rings.nearest = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
   rings.level = levelOf(light, rings.map, x.position);
   rings.entrySide = entrySide(light, rings.map, x.position) * mm * float(1 << rings.level);
-  uvec4 bits = entryAt(rings.map, placeInMap(parallel, point), rings.level);
+  vec2 place = placeInMap(parallel, point);
+  uvec4 bits = entryAt(rings.map, place, rings.level);
   // The slope of the surface counts within an entry point, as in arrivesAt and depthTolerance.
   rings.tolerance = max(rings.entrySide * (1.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
@@ -151,12 +182,15 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.ahead = distanceAhead(parallel, own.depth, point.z) * perAhead * mm;
   if (own.exit < kNoExit) rings.behindExit = max(rings.ahead - own.exit * mm, 0.0);
   rings.shadowed = clamp(rings.behindExit / rings.tolerance - 1.0, 0.0, 1.0);
-  float t = clamp(rings.ahead, 0.0, longest) / mm;
+  rings.nearest = rings.ahead;
+  if (isOpaque(bits))
+    rings.nearest = distanceAhead(parallel, unpackEntry(besideHair(rings.map, place, rings.level, bits)).depth, point.z) * perAhead * mm;
+  float t = clamp(rings.nearest, 0.0, longest) / mm;
   vec3 guess = x.position + t * rings.axis;
   uint map;
   bool inside = findMap(light, guess, map, point);
   bits = inside ? entryAt(map, placeInMap(parallel, point), levelOf(rings, light, map, x.position)) : kNoEntry;
-  if (holdsSurface(bits)) {
+  if (holdsSurface(bits) && !isOpaque(bits)) {
     vec3 y = guess + distanceAhead(parallel, unpackEntry(bits).depth, point.z) *
                          (parallel ? toLight : light.position.xyz - guess);
     t = clamp(dot(y - x.position, rings.axis), 0.0, longest / mm);
@@ -352,7 +386,7 @@ vec3 gatherLight(uint m, LightConstants light, Surface x, Pattern pattern, BodyF
   // The sums have the light's cone and range.
   float falloff = directional(light) ? 1.0 : 1.0 / max(incident.distanceTo * incident.distanceTo, 1.0e-12);
   float own = falloff * cosine * arrivesAt(rings, cosine);
-  if (own == 0.0 && rings.ahead > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
+  if (own == 0.0 && rings.nearest > kFarthestLit * materials[m].gather.lengths.z) return vec3(0.0);
   Gathered g = gatherSamples(m, light, x, pattern, incident.toLight, rings);
   vec3 through = g.through * frame.filterAndLimit.rgb * materials[m].inverseReflectance.rgb * body.through;
   vec3 hidden = min(g.hidden, vec3(1.0)), seen = g.seenLight / max(g.seen, vec3(1.0e-12)), around = 0.5 * (own + seen);

@@ -76,6 +76,16 @@ BackFace backAt(ivec2 pixel) {
   return BackFace(ray.origin + front * ray.direction + chord * normalize(ray.direction), there ? chord : 0.0);
 }
 
+// Back face one pixel away, or two where a pixel of hair lies between.
+BackFace backBeside(ivec2 pixel, ivec2 axis) {
+  BackFace back;
+  [[dont_unroll]] for (int away = 1; away <= 2; ++away) {
+    back = backAt(pixel + away * axis);
+    if (back.chord > 0.0) break;
+  }
+  return back;
+}
+
 // Steps across and along the image on the back face. `chord` grows to the lesser of both sides' chords: a crease of a pixel's width,
 // whose back face lies close, is no thin body. False: a step is not known.
 bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
@@ -83,7 +93,7 @@ bool backSteps(ivec2 pixel, vec3 back, inout float chord, out vec3 steps[2]) {
   steps[1] = vec3(0.0);
   [[dont_unroll]] for (int i = 0; i < 2; ++i) {
     ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1);
-    BackFace f = backAt(pixel + axis), b = backAt(pixel - axis);
+    BackFace f = backBeside(pixel, axis), b = backBeside(pixel, -axis);
     steps[0] = steps[1];
     steps[1] = nearerStep(vec4(f.position - back, f.chord > 0.0 ? 1.0 : 0.0), vec4(back - b.position, b.chord > 0.0 ? 1.0 : 0.0));
     chord = max(chord, min(f.chord, b.chord));

@@ -63,18 +63,41 @@ vec3 normalOfBack(ivec2 pixel, float back, uint material) {
   return -normalOfDepths(frame.camera, pixel, back, beside);
 }
 
+// Planar distance of the surface that goes on under a pixel of hair, as alpha hashing and dithering draw it: the pixels to both sides
+// have one material. Of two axes the less steep one counts. -1: none. `beside`: one of the two pixels.
+float frontUnderHair(ivec2 pixel, out ivec2 beside, out uint material) {
+  float front = -1.0, least = kNoDepth;
+  beside = pixel;
+  material = 0u;
+  [[dont_unroll]] for (int i = 0; i < 2; ++i) {
+    ivec2 axis = i == 0 ? ivec2(1, 0) : ivec2(0, 1), next = pixel + axis, last = pixel - axis;
+    if (!insideRect(next) || !insideRect(last)) continue;
+    uint theirs = materialAt(inImage(next));
+    if (theirs == 0u || theirs != materialAt(inImage(last))) continue;
+    float a = frontDistance(inImage(next)), b = frontDistance(inImage(last));
+    if (!(min(a, b) > 0.0) || !(abs(a - b) < least)) continue;
+    least = abs(a - b);
+    beside = next;
+    material = theirs;
+    front = 0.5 * (a + b);
+  }
+  return front;
+}
+
 PixelSurface surfaceUnder(vec3 position, bool hidden) {
   PixelSurface s = PixelSurface(ivec2(0), position.z * frame.camera.range.x, -1.0, vec3(0.0), 0.0);
   ivec2 pixel;
   if (!projectToPixel(frame.camera, position, pixel) || !insideRect(pixel)) return s;
   s.pixel = pixel;
-  // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused.
+  // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused. The light of skin under single
+  // pixels of hair is, as pixels around stand for them.
   uint material = materialAt(inImage(pixel));
-  if (material == 0u) return s;
   float depth = hidden ? backAt(pixel, material) : frontDistance(inImage(pixel));
-  if (!(depth > 0.0)) return s;
+  ivec2 of = pixel;
+  if (!hidden && material == 0u && depth > 0.0) depth = frontUnderHair(pixel, of, material);
+  if (material == 0u || !(depth > 0.0)) return s;
   s.depth = depth;
-  s.normal = hidden ? normalOfBack(pixel, depth, material) : normalOfPixel(pixel, depth, material);
+  s.normal = hidden ? normalOfBack(pixel, depth, material) : normalOfPixel(of, depth, material);
   ViewRay ray = viewRay(frame.camera, pixel);
   s.above = dot(s.normal, position - ray.origin - depth * ray.direction);
   return s;
@@ -118,21 +141,49 @@ bool cameraSees(PixelSurface s, vec3 normal, float tolerance, float uncertain) {
 
 // ---- What the map's neighbors say
 
-// From y to the neighboring texel's point at a step; w: 1, or 0 where the map holds none. `stored`: of the neighbor.
-vec4 stepTo(EntryMapConstants map, vec3 y, ivec2 neighbor, float stored) {
-  bool within = all(greaterThanEqual(neighbor, ivec2(0))) && all(lessThan(neighbor, ivec2(map.map.xy)));
-  return within && shadowHolds(map.meta, stored) ? vec4(pointOf(map, neighbor, stored).position - y, 1.0) : vec4(0.0);
+const float kSquaredEdge = 4.0;  // squared steps across the light; a step less steep than 60 degrees is no edge
+const float kSquaredHair = 64.0; // what lies nearer by 8 texels may be hair; folds of the surface lie nearer by less
+
+const int kHairReach = 3; // texels
+
+// One texel's step along an axis from y, where both neighbors store what is nearer to the light: single texels of hair, as alpha
+// hashing and dithering draw them. The next texels of y's own surface tell, or the surface faces the light. `across`: of a texel.
+vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec3 across, float squaredStep) {
+  [[dont_unroll]] for (int i = 2; i < 2 * kHairReach; ++i) {
+    int away = (i >> 1) + 1, side = (1 - 2 * (i & 1)) * away;
+    ivec2 neighbor = texel + side * axis;
+    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
+    float theirs = shadowTexel(map.meta.x, firstTexel(map.occluder) + neighbor);
+    if (!shadowHolds(map.meta, theirs)) continue;
+    vec3 toward = (pointOf(map, neighbor, theirs - map.offsets.x).position - y.position) / float(side);
+    if (dot(toward, toward) < kSquaredEdge * squaredStep) return toward;
+  }
+  return across;
 }
 
-// One texel's step along an axis of the map from y. `stored`: of the neighbors forwards and backwards.
-vec3 entryStep(EntryMapConstants map, ivec2 texel, vec3 y, ivec2 axis, vec2 stored) {
-  vec4 forwards = stepTo(map, y, texel + axis, stored.x), backwards = stepTo(map, y, texel - axis, stored.y);
-  return nearerStep(forwards, vec4(-backwards.xyz, backwards.w));
+// One texel's step along an axis of the map from y. `stored`: of the neighbors forwards and backwards; `across`: a texel's step at the
+// depth of y.
+vec3 entryStep(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 stored, vec3 across) {
+  vec4 steps[2] = vec4[](vec4(0.0), vec4(0.0));
+  float squaredStep = dot(across, across);
+  int hairs = 0;
+  for (int i = 0; i < 2; ++i) {
+    int side = 1 - 2 * i;
+    ivec2 neighbor = texel + side * axis;
+    if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy))) || !shadowHolds(map.meta, stored[i])) continue;
+    MapPoint there = pointOf(map, neighbor, stored[i]);
+    steps[i] = vec4(float(side) * (there.position - y.position), 1.0);
+    bool nearer = map.meta.z == 0u ? there.depth > y.depth : there.depth < y.depth;
+    hairs += nearer && dot(steps[i].xyz, steps[i].xyz) >= kSquaredHair * squaredStep ? 1 : 0;
+  }
+  return hairs == 2 ? slopeBetweenHair(map, texel, y, axis, across, squaredStep) : nearerStep(steps[0], steps[1]);
 }
 
 // Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
 vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
-  vec3 normal = cross(entryStep(map, texel, y.position, ivec2(1, 0), beside.xy), entryStep(map, texel, y.position, ivec2(0, 1), beside.zw));
+  float scale = map.meta.z == 0u ? 1.0 : y.depth;
+  vec3 normal = cross(entryStep(map, texel, y, ivec2(1, 0), beside.xy, scale * map.stepX.xyz),
+                      entryStep(map, texel, y, ivec2(0, 1), beside.zw, scale * map.stepY.xyz));
   float squared = dot(normal, normal);
   if (!(squared > 0.0)) return toLight;
   return normal * (dot(normal, toLight) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
@@ -232,25 +283,27 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
     if (isShown) normal = shown.normal;
   }
 
+  bool clamped = isClamped(map.meta, map.offsets, asDrawn), opaque = clamped;
   float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
   uint material = 0u;
   if (map.occluder.y != 0u) {
     float index = shadowTexel(map.occluder.y - 1u, inImage) * uintBitsToFloat(map.occluder.z);
     material = isWithin(index, 0.5, 255.5) ? uint(index + 0.5) : 0u;
-    if (material == 0u) share = 0.0; // opaque, as is NaN
+    opaque = opaque || material == 0u; // as is NaN
   }
+  if (opaque) share = 0.0;
   float exit = kNoExit;
   if (map.occluder.x != 0u) {
     float exitStored = shadowTexel(map.occluder.x - 1u, inImage);
     MapPoint behind = pointOf(map, texel, exitStored);
-    if (shadowHolds(map.meta, exitStored) && abs(behind.depth) < kNoDepth)
+    if (!clamped && shadowHolds(map.meta, exitStored) && abs(behind.depth) < kNoDepth)
       exit = max(dot(y.position - behind.position, toLight) + map.offsets.z, 0.0); // the exit has no offset
   }
   float cosine = max(dot(normal, toLight), 0.0);
   bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
   // Without diffusion what the camera sees stays where it is.
   float seenShare = seen && hasFlag(PELLUCID_FLAG_DIFFUSED) ? share : 0.0;
-  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material));
+  return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material, opaque));
 }
 
 #endif

@@ -9,8 +9,19 @@ struct ShadowReceiver {
   vec4 clip;
   ivec2 texel; // of the image
   vec2 place;  // in the map, texels from its corner
-  bool inside; // false: the map says nothing about this point, so no light comes through it
+  float beyond; // texels that the point lies outside of the map, at most 0 inside
 };
+
+// A map says nothing about points outside, so that no light comes through them. But cubes and cascades have no seams: where none of
+// a light's maps contains a point, the nearest one does if the point is at most this outside. Faces of 90 degrees leave a rounding between.
+const float kSeam = 0.5;       // texels
+const float kFarBeyond = 3.0e38;
+
+// Texels that a place lies outside of a map of this size.
+float beyondMap(vec2 place, vec2 size) {
+  vec2 outside = max(-place, place - size);
+  return max(outside.x, outside.y);
+}
 
 // The first texel of the map's tile in the image. occluder: ShadowConstants::occluder.
 ivec2 firstTexel(uvec4 occluder) { return ivec2(occluder.w & 0xFFFFu, occluder.w >> 16); }
@@ -26,10 +37,8 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   bool inFront = clip.w > 0.0;
   vec2 ndc = clip.xy / (inFront ? clip.w : 1.0);
   vec2 place = (ndc * 0.5 + 0.5) * shadow.depth.zw;
-  ivec2 texel = ivec2(floor(place));
-  bool inside = inFront && all(lessThanEqual(abs(ndc), vec2(1.0))) &&
-                all(lessThan(texel, ivec2(shadow.depth.zw)));
-  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), place, inside);
+  ivec2 texel = ivec2(clamp(floor(place), vec2(0.0), shadow.depth.zw - 1.0));
+  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), place, inFront ? beyondMap(place, shadow.depth.zw) : kFarBeyond);
 }
 
 // The four texels around a receiver, of the image, and their bilinear weights: low, (high.x, low.y), (low.x, high.y), high.
@@ -52,6 +61,15 @@ bool shadowHolds(uvec4 meta, float stored) {
   if (meta.y == PELLUCID_SHADER_DEPTH_DEVICE)
     return isWithin(stored, 0.0, kAboveOne) && stored != uintBitsToFloat(meta.w);
   return isWithin(stored, 0.0, kNoDepth) && stored != 0.0;
+}
+
+const float kNearRounding = 1.0e-7; // of device depths, besides the map's smallest step
+
+// True where the texel lies on the map's near plane. Engines clamp there what lies before it ("pancaking"): something nearer is lit,
+// and nobody knows where. meta, offsets: of ShadowConstants.
+bool isClamped(uvec4 meta, vec4 offsets, float stored) {
+  float near = 1.0 - uintBitsToFloat(meta.w); // the other end holds nothing
+  return meta.y == PELLUCID_SHADER_DEPTH_DEVICE && abs(stored - offsets.x - near) <= max(0.5 * offsets.w, kNearRounding);
 }
 
 // The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.

@@ -49,7 +49,7 @@ vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
   }
   // Read last: until here its registers let more waves run.
   vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, at, 0);
-  vec3 result = sanitize(sanitize(source.rgb) + transmitted * materials[m].inverseReflectance.rgb);
+  vec3 result = limited(sanitize(source.rgb) + transmitted * materials[m].inverseReflectance.rgb);
   if (kDebugViews) {
     // The divisors are positive where they are used; nothing arriving shows as 0.
     vec3 some = vec3(greaterThan(arriving, vec3(0.0)));

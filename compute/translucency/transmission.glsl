@@ -128,7 +128,7 @@ DrawnDepth drawnDepth(ShadowConstants shadow, ivec2 texel, float stored) {
   return drawnDepth(shadow.offsets, stored, beside, holds);
 }
 
-// The four texels around a point in the first of the light's maps that contains it.
+// The four texels around a point in the first of the light's maps that contains it, or beside a seam between maps.
 struct LightTexels {
   vec4 weight;    // bilinear, of texels that have a surface where light enters the medium asked for; 0 of others
   vec4 thickness; // scene units along the light ray; negative: the surface is beyond the point
@@ -138,7 +138,8 @@ struct LightTexels {
 
 const float kEverywhere = 3.0e38;
 
-// `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight.
+// `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight;
+// kEverywhere: texels tell what holds light back, and not where light enters.
 LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, uint material, vec3 x, float cosine,
                         float farthest) {
   ShadowFootprint footprint = footprintOf(shadow, receiver);
@@ -157,7 +158,9 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
     float stored = texels[i];
     if (!shadowHolds(shadow.meta, stored)) continue;
     l.thickness[i] = lightThickness(ray, stored + drawn.depth) + shadow.offsets.z;
-    if (l.thickness[i] < farthest) l.weight[i] = footprint.weight[i];
+    // A clamped texel holds light back, but nobody knows the thickness before it.
+    bool unknown = material != 0u && farthest < kEverywhere && isClamped(shadow.meta, shadow.offsets, stored);
+    if (l.thickness[i] < farthest && !unknown) l.weight[i] = footprint.weight[i];
     l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(ray, stored));
   }
   if (material != 0u && l.weight != vec4(0.0)) l.weight *= entersMedium(shadow, footprint, ray, material, depthTolerance(l.side, cosine));
@@ -166,12 +169,18 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
 
 // x: a point on or behind a surface; cosine: between its normal and the light; 0: not known.
 LightTexels lightTexels(LightConstants light, Incident incident, uint material, vec3 x, float cosine, float farthest) {
+  uint found = light.meta.z;
+  float least = light.meta.z > 1u ? kSeam : 0.0;
   for (uint i = 0u; i < light.meta.z; ++i) {
-    ShadowConstants shadow = shadows[light.meta.y + i];
-    ShadowReceiver receiver = projectReceiver(shadow, x);
-    if (receiver.inside) return lightTexels(shadow, receiver, incident, material, x, cosine, farthest);
+    float beyond = projectReceiver(shadows[light.meta.y + i], x).beyond;
+    if (!(beyond <= least)) continue;
+    found = i;
+    least = beyond;
+    if (beyond <= 0.0) break;
   }
-  return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+  if (found == light.meta.z) return LightTexels(vec4(0.0), vec4(0.0), 0.0, 0.0);
+  ShadowConstants shadow = shadows[light.meta.y + found];
+  return lightTexels(shadow, projectReceiver(shadow, x), incident, material, x, cosine, farthest);
 }
 
 // The i-th of the four pixels beside a pixel: right, left, below, above.
@@ -183,8 +192,16 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
 // Unit normal of the front or back depths, towards the eye; 0: not known.
 vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
-  return normalOfDepths(frame.camera, inLattice(pixel), distanceOf(pixel, material, back), beside);
+  float own = distanceOf(pixel, material, back);
+  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+    ivec2 next = pixelBeside(pixel, i);
+    beside[i] = distanceOf(next, material, back);
+    if (beside[i] > 0.0) continue;
+    // Single pixels of hair lie between pixels of the surface.
+    float beyond = distanceOf(pixelBeside(next, i), material, back);
+    if (beyond > 0.0) beside[i] = mix(own, beyond, 0.5);
+  }
+  return normalOfDepths(frame.camera, inLattice(pixel), own, beside);
 }
 
 // The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: along the view ray,

@@ -72,7 +72,10 @@ struct BufferReader {
     source.field = field.path();
     if (const auto scale = field.find("scale")) {
       source.scale = scale->number();
-      if (!(source.scale > 0)) scale->fail("must be above 0, is " + scale->shown());
+      // Depths may be negative before the camera.
+      const bool isDepth = field.has("encoding") || source.field.ends_with(".exit");
+      if (!(source.scale > 0) && !(isDepth && source.scale < 0))
+        scale->fail((isDepth ? "must not be 0, is " : "must be above 0, is ") + scale->shown());
     }
     if (field.has("constant")) {
       for (const char* key : {"file", "part", "channel", "channels"})
@@ -103,10 +106,6 @@ struct BufferReader {
     return source;
   }
 };
-
-PellucidDepthEncoding screenEncoding(const Field& field) {
-  return field["encoding"].choice({"device", "viewZ"}) == 0 ? PELLUCID_DEPTH_DEVICE : PELLUCID_DEPTH_VIEW_Z;
-}
 
 // Names of PellucidDepthEncoding and PellucidLightType, by their values.
 const std::vector<std::string> kEncodings = {"device", "viewZ", "distance"},
@@ -360,7 +359,7 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
       {"frontDepth", "backDepth", "irradiance", "hiddenIrradiance", "normal", "albedo", "material"});
   const auto depth = [&](const Field& field, DepthImage& image) {
     field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
-    image.encoding = screenEncoding(field);
+    image.encoding = static_cast<PellucidDepthEncoding>(field["encoding"].choice(kEncodings));
     refuseScaleOfDevice(field, image.encoding);
     return read(field, 1);
   };

@@ -1,5 +1,6 @@
 #include "capture/read.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -175,6 +176,39 @@ bool holdsSurface(const DepthImage& depth, std::size_t pixel) {
   return value > 0 && value < (depth.encoding == PELLUCID_DEPTH_DEVICE ? 1 : kLeastNoDepth);
 }
 
+// Distances in front of the eye are above 0. Where the sign is another, every pixel would be empty.
+void requirePositive(const BufferSource& source, const DepthImage& depth) {
+  if (depth.encoding == PELLUCID_DEPTH_DEVICE) return;
+  const auto within = [](float v) { return v > 0 && v < kLeastNoDepth; };
+  const std::vector<float>& values = depth.image.data;
+  if (std::any_of(values.begin(), values.end(), within) ||
+      std::none_of(values.begin(), values.end(), [&](float v) { return within(-v); }))
+    return;
+  throw InputError(source.file.string(), source.field,
+                   "holds no depth above 0 but negative ones; give \"scale\": -1, as depths are positive in front of the eye");
+}
+
+// View z of distances from the eye along the ray. A direction (x, y, -1) whose ray meets the pixel is a solution of two
+// linear equations: its clip x and y are those of the pixel times its clip w.
+void toViewZ(const Matrix& clipFromView, DepthImage& depth) {
+  const auto clip = [&](std::size_t row, std::size_t column) { return clipFromView[4 * column + row]; };
+  for (int y = 0; y < depth.image.height; ++y)
+    for (int x = 0; x < depth.image.width; ++x) {
+      float& value = *depth.image.at(x, y);
+      if (!(value < kLeastNoDepth)) continue;
+      const double ndc[] = {(x + 0.5) / depth.image.width * 2 - 1, (y + 0.5) / depth.image.height * 2 - 1};
+      double m[2][3];
+      for (std::size_t r = 0; r < 2; ++r)
+        for (std::size_t c = 0; c < 3; ++c) m[r][c] = clip(r, c) - ndc[r] * clip(3, c);
+      const double determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+      if (determinant == 0) continue;  // no camera has such a matrix, and the frame refuses it
+      const double dx = (m[0][2] * m[1][1] - m[0][1] * m[1][2]) / determinant,
+                   dy = (m[0][0] * m[1][2] - m[0][2] * m[1][0]) / determinant;
+      value = static_cast<float>(double(value) / std::hypot(dx, dy, 1.0));
+    }
+  depth.encoding = PELLUCID_DEPTH_VIEW_Z;
+}
+
 void multiply(Image& image, const Image& times) {
   for (std::size_t i = 0; i < times.data.size(); ++i) image.data[i] *= times.data[i];
 }
@@ -225,6 +259,13 @@ Capture readImages(const Manifest& manifest) {
         loader.wantBeside(depth, *sources.casterMaterial, casters.emplace_back(), kOutside, false);
     }
   loader.load(capture.width, capture.height);
+  requirePositive(manifest.frontDepth, capture.frontDepth);
+  if (manifest.backDepth) requirePositive(*manifest.backDepth, capture.backDepth);
+  for (std::size_t i = 0; i < capture.lights.size(); ++i)
+    for (std::size_t k = 0; k < capture.lights[i].shadowMaps.size(); ++k)
+      requirePositive(manifest.shadowMaps[i][k].depth, capture.lights[i].shadowMaps[k].depth);
+  for (DepthImage* depth : {&capture.frontDepth, &capture.backDepth})
+    if (depth->encoding == PELLUCID_DEPTH_DISTANCE) toViewZ(capture.clipFromView, *depth);
 
   multiply(capture.irradiance, irradianceTimes);
   if (capture.truth) multiply(capture.truth->image, truthTimes);

@@ -84,9 +84,16 @@ void SceneHash::add(const SceneParameters& parameters) {
 }
 
 void SceneHash::add(const reference::Emitters& emitters, const Capture& capture) {
-  for (const Light& light : emitters.lights)
-    add(light.type, light.position, light.direction, light.color, light.intensity, light.range, light.radius,
-        light.innerConeAngle, light.outerConeAngle);
+  for (const Light& light : emitters.lights) {
+    // All fields, so that a new one comes here. Errors of tables are of files; the geometry stands for shadow
+    // maps.
+    const auto& [type, position, direction, color, intensity, range, radius, innerConeAngle, outerConeAngle,
+                 angleTable, distanceTable, angleTableError, distanceTableError, shadowMaps] = light;
+    add(type, position, direction, color, intensity, range, radius, innerConeAngle, outerConeAngle);
+    if (!angleTable.empty()) add(std::string("angleTable"), angleTable);
+    if (!distanceTable.empty()) add(std::string("distanceTable"), distanceTable);
+  }
+  if (emitters.harmonics) add(*emitters.harmonics);
   if (emitters.environment) add(emitters.environment->up, emitters.environment->down);
   add(capture.width, capture.height, capture.clipFromView, capture.viewFromWorld);
   for (const MaterialSource& source : capture.materials) {
@@ -202,8 +209,7 @@ Scene proceduralScene(const Options& options, SceneHash& hash) {
   scene.solids = std::make_unique<SceneModel>(sceneModel(parameters));
   setIor(scene.solids->materials, options.scene);
   hash.add(parameters);
-  scene.capture =
-      options.like.empty() ? renderCapture(*scene.solids, parameters) : readCapture(options.like);
+  scene.capture = options.like.empty() ? renderCapture(*scene.solids, parameters) : readCapture(options.like);
   if (scene.solids->materials.size() > scene.capture.materials.size())
     throw InputError(
         options.like, "materials",
@@ -215,12 +221,34 @@ Scene proceduralScene(const Options& options, SceneHash& hash) {
   return scene;
 }
 
+// Light from all around of the capture that --like names, which its replay has.
+void takeEnvironment(const std::string& like, Scene& scene) {
+  const Capture& capture = scene.capture;
+  const std::optional<Environment>& given = scene.emitters.environment;
+  if (given && capture.environment) {
+    const Harmonics harmonics = given->harmonics();
+    for (std::size_t i = 0; i < harmonics.size(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (const double own = (*capture.environment)[i][c];
+            std::abs(own - harmonics[i][c]) > 1e-4 * (1 + std::abs(own)))
+          throw InputError(like, "environment", "is not that of --environment; leave the option out");
+  }
+  if (!given && capture.environment) scene.emitters.harmonics = capture.environment;
+  if (!given && !capture.environment && !capture.hiddenIrradiance.empty())
+    throw InputError(
+        like, "hiddenIrradiance",
+        "is of light that no ray finds: name the light by \"environment\", or leave the buffer out");
+}
+
 Scene makeScene(const Command& command, const Options& options) {
   SceneHash hash;
   Scene scene =
       isProcedural(command, options.scene) ? proceduralScene(options, hash) : modelScene(options, hash);
   scene.emitters.environment = environment(options.scene);
-  if (options.like.empty()) addTracedLight(scene.capture, *scene.traced, scene.emitters.environment);
+  if (options.like.empty())
+    addTracedLight(scene.capture, *scene.traced, scene.emitters.environment);
+  else
+    takeEnvironment(options.like, scene);
   scene.emitters.lights = scene.capture.lights;
   for (Light& light : scene.emitters.lights) light.shadowMaps.clear();
   hash.add(scene.emitters, scene.capture);
@@ -314,9 +342,9 @@ private:
 
 // Refuses options that a capture given by --like answers itself.
 void refuseScene(const Command& command) {
-  for (const char* name : {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior",
-                           "--shadow-size", "--shadow-depth", "--jitter", "--depth", "--back", "--point-maps",
-                           "--infinite-far"})
+  for (const char* name :
+       {"--size", "--camera", "--view", "--fov", "--projection", "--light", "--ior", "--shadow-size",
+        "--shadow-depth", "--jitter", "--depth", "--back", "--point-maps", "--infinite-far"})
     if (command.isGiven(name))
       throw UsageError(std::string(name) +
                        ": --like takes camera, size, lights and materials of the capture");

@@ -1,6 +1,7 @@
 #include "common/gpu_image.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 
@@ -9,6 +10,11 @@
 
 namespace pellucid::harness {
 namespace {
+
+// Finite values stay so: shaders read infinity as no light.
+glm::uint16 packFiniteHalf(float v) {
+  return glm::packHalf1x16(std::isfinite(v) ? std::clamp(v, -65504.0f, 65504.0f) : v);
+}
 
 struct Texel {
   int channels;
@@ -184,7 +190,7 @@ void GpuImage::upload(const Image& source, int layer) {
     return transfer(bytes.data(), layer);
   }
   std::vector<glm::uint16> words(full.size());
-  const auto pack = format_ == VK_FORMAT_R16G16_SNORM ? &glm::packSnorm1x16 : &glm::packHalf1x16;
+  const auto pack = format_ == VK_FORMAT_R16G16_SNORM ? &glm::packSnorm1x16 : &packFiniteHalf;
   std::transform(full.begin(), full.end(), words.begin(), pack);
   transfer(words.data(), layer);
 }

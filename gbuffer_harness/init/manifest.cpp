@@ -118,7 +118,9 @@ DepthFacts Builder::depthFacts() const {
   }
   if (count == 0)
     throw InputError(guesses_.at(Role::FrontDepth).group.file.string(), "frontDepth",
-                     "no pixel holds a surface");
+                     std::any_of(front_.data.begin(), front_.data.end(), [](float v) { return v < 0; })
+                         ? "no depth is above 0, but some are negative; negate view z, which is positive in front of the eye"
+                         : "no pixel holds a surface");
   DepthFacts facts;
   const bool couldBe = most <= 1;
   facts.isDevice = words_.deviceDepth.value_or(couldBe && (words_.camera.nearPlane || zeros + ones > 0));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "reference/color.h"
 #include "reference/transmittance.h"
 
 namespace pellucid::harness::reference {
@@ -49,8 +50,7 @@ glm::dvec3 Ambient::at(const Surface& s, std::size_t material) const {
   };
   const auto hidden = [&](const glm::dvec3& normal) {
     if (capture_.hiddenIrradiance.empty()) return visible(normal);
-    const float* e = capture_.hiddenIrradiance.at(s.pixel.x, s.pixel.y);
-    return glm::dvec3(e[0], e[1], e[2]);
+    return readColor(capture_.hiddenIrradiance.at(s.pixel.x, s.pixel.y));
   };
   if (m.thinWalled)
     return glm::dvec3(m.wallTransmittance[0], m.wallTransmittance[1], m.wallTransmittance[2]) *

@@ -26,6 +26,8 @@ public:
   std::optional<glm::dvec3> at(int x, int y) const;
   // The point of the texel's ray that has a depth in the map's encoding.
   std::optional<glm::dvec3> at(int x, int y, float stored) const;
+  // True where it lies on the near plane, where light enters elsewhere.
+  bool clamped(int x, int y) const;
   // Scene units along the light's ray that the texel's surface may be off by.
   double uncertain(int x, int y) const;
 
@@ -88,6 +90,10 @@ bool ShadowTexels::holds(float stored) const {
 
 DrawnDepth ShadowTexels::drawn(int x, int y) const {
   return drawnDepth(map_, x, y, [this](float stored) { return holds(stored); });
+}
+
+bool ShadowTexels::clamped(int x, int y) const {
+  return isClamped(map_, nothing_, *map_.depth.image.at(x, y));
 }
 
 std::optional<glm::dvec3> ShadowTexels::at(int x, int y) const {
@@ -274,6 +280,7 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
               static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
           const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
           if (!map.casterMaterial.empty() && of == 0) continue;
+          if (texels.clamped(x, y)) continue;
           double exit = INFINITY;
           if (!map.exitDepth.empty())
             if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
@@ -304,7 +311,8 @@ double Gather::quadSide(const Surface& surface) const {
   const Camera& camera = surfaces_.camera();
   const double planar = camera.planarDepth(surface.position);
   const glm::dvec2 pixel = camera.project(surface.position);
-  return 2 * mm_ * glm::distance(camera.position(pixel + glm::dvec2(1, 0), planar), camera.position(pixel, planar));
+  return 2 * mm_ *
+         glm::distance(camera.position(pixel + glm::dvec2(1, 0), planar), camera.position(pixel, planar));
 }
 
 double Gather::meanCurvature(const Surface& surface, double reach) const {
@@ -320,7 +328,9 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
     return mm_ * glm::length(side);
   };
   reach = std::max(reach, 2 * std::max(pixelAlong({1, 0}), pixelAlong({0, 1})));
-  const auto stepsAlong = [&](glm::dvec2 step) { return std::max(2.0, std::floor(reach / pixelAlong(step) + 0.5)); };
+  const auto stepsAlong = [&](glm::dvec2 step) {
+    return std::max(2.0, std::floor(reach / pixelAlong(step) + 0.5));
+  };
   struct Beside {
     glm::dvec3 apart{0}, turn{0};  // mm; of the normal
     double weight = 0;             // 1 where the surface goes on
@@ -413,26 +423,24 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   place.toLight = arrival.toLight;
   place.axis = glm::normalize(arrival.toLight + std::min(cosine, 0.0) * exit.normal);
   place.views = &views_[light];
-  for (const ShadowView& view : views_[light]) {
-    const ShadowView::Lookup found = view.at(world);
-    if (found.kind == ShadowView::Kind::Outside) continue;
+  if (const ShadowView* view = ShadowView::find(views_[light], world)) {
+    const ShadowView::Lookup found = view->at(world);
     place.tolerance = std::max(mm_ * found.texel * (1 + slope), 1e-12);
     double arrives = 1;
     if (found.kind == ShadowView::Kind::Surface) {
       // None where the lit surface is further ahead than a texel's side makes of the slope.
       arrives = std::clamp(2 - found.distance / (found.texel * (1 + slope)), 0.0, 1.0);
-      const double behind = mm_ * std::max(found.fromExit.value_or(0), 0.0);
+      const double behind = found.clamped ? 0 : mm_ * std::max(found.fromExit.value_or(0), 0.0);
       place.shadowed = std::clamp(behind / place.tolerance - 1, 0.0, 1.0);
       place.behind = behind * glm::dot(place.axis, place.toLight);
     }
     place.ownIrradiance = std::max(cosine, 0.0) * arrives * arrival.irradiance;
-    break;
   }
   return place;
 }
 
-// The straight path must stay in the body if the exit lies beyond the map's exit at the texel, or beyond the map's exit
-// on the exit's own light ray.
+// The straight path must stay in the body if the exit lies beyond the map's exit at the texel, or beyond the
+// map's exit on the exit's own light ray.
 double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) const {
   if (!(texel.exit < INFINITY)) return 1;
   const glm::dvec3 to = exit.position - texel.position;
@@ -440,8 +448,8 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
       std::clamp((-glm::dot(to, place.toLight) - texel.exit) / place.tolerance - 1, 0.0, 1.0);
   double stays = 1;
   if (beyond > 0) stays -= beyond * (1 - (1 - place.shadowed) * pathInside(to, exit, place, 0.5));
-  // A path that begins before the depth at which the exit's own light ray has left the medium does not cross the gap
-  // behind it.
+  // A path that begins before the depth at which the exit's own light ray has left the medium does not cross
+  // the gap behind it.
   const double along = -glm::dot(to, place.axis);
   const double crosses = place.shadowed * std::clamp((along - place.behind) / place.tolerance, 0.0, 1.0);
   if (crosses > 0) stays *= 1 - crosses * (1 - pathInside(to, exit, place, 0.5 * place.behind / along));
@@ -450,13 +458,13 @@ double Gather::inside(const Texel& texel, const Exit& exit, const Place& place) 
 
 double Gather::pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const {
   const glm::dvec3 on = (exit.position - part * to) / mm_;
-  for (const ShadowView& view : *place.views) {
-    const ShadowView::Lookup found = view.at(on);
-    if (found.kind == ShadowView::Kind::Outside) continue;
-    if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.casterMaterial == 0) return 1;
-    return 1 - std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
-  }
-  return 1;
+  const ShadowView* view = ShadowView::find(*place.views, on);
+  if (!view) return 1;
+  const ShadowView::Lookup found = view->at(on);
+  if (found.kind != ShadowView::Kind::Surface || !found.fromExit || found.clamped ||
+      found.casterMaterial == 0)
+    return 1;
+  return 1 - std::clamp(mm_ * *found.fromExit / place.tolerance, 0.0, 1.0);
 }
 
 Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& place) const {
@@ -469,9 +477,11 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (y.material != 0 && y.material != exit.material + 1) continue;
       const glm::dvec3 to = exit.position - y.position;
       GatherPath path = gatherPath(to, exit.normal, y.normal);
-      // A quad has one normal: what turns little within its side is one surface, through which no light comes.
+      // A quad has one normal: what turns little within its side is one surface, through which no light
+      // comes.
       const double turned = 1 - path.facing,
-                   across = turned * std::lerp(std::min(path.distance / exit.quad, 1.0), 1.0, std::min(2 * turned, 1.0));
+                   across = turned * std::lerp(std::min(path.distance / exit.quad, 1.0), 1.0,
+                                               std::min(2 * turned, 1.0));
       const double side = std::sqrt(y.area);
       // Half a texel: nearer than that the sum is no integral.
       const bool own = path.distance < 0.6 * side;
@@ -481,8 +491,8 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (opposite > 0) sums.transmitted += opposite * kernel.transmitted(path.distance, path.depth) * y.flux;
       if (!(alike > 0) && !(y.seen && opposite > 0)) continue;
       // The texel of the exit itself has all that lies within a disc of its area.
-      const glm::dvec3 profile =
-          own ? kernel.reflectedWithin(side / std::sqrt(std::numbers::pi)) / y.area : kernel.reflected(path.distance);
+      const glm::dvec3 profile = own ? kernel.reflectedWithin(side / std::sqrt(std::numbers::pi)) / y.area
+                                     : kernel.reflected(path.distance);
       if (y.seen) {
         sums.opposite += opposite * profile * y.flux;
         sums.seenEntering += alike * profile * y.within * y.flux;

@@ -7,6 +7,7 @@
 
 #include "common/error.h"
 #include "reference/camera.h"
+#include "scene/light_table.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness::reference {
@@ -51,6 +52,12 @@ DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bo
           map.depthStep / 2 + std::abs(bias) * (map.depthStep + missed)};
 }
 
+bool isClamped(const ShadowMap& map, float nothing, float stored) {
+  if (map.depth.encoding != PELLUCID_DEPTH_DEVICE) return false;
+  return std::abs(double(stored) - map.depthBiasConstant - (1 - double(nothing))) <=
+         std::max(map.depthStep / 2, 1e-7);
+}
+
 namespace {
 
 double rangeWindow(double distance, double range) {
@@ -65,13 +72,6 @@ double coneFalloff(const Light& light, const glm::dvec3& toLight) {
   const double cosAngle = glm::dot(glm::normalize(toGlm(light.direction)), -toLight);
   const double t = std::clamp((cosAngle - cosOuter) * scale, 0.0, 1.0);
   return t * t;
-}
-
-// at: 0..1, between the first entry and the last.
-double factorAt(const std::vector<double>& table, double at) {
-  const double place = at * static_cast<double>(table.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(place), table.size() - 2);
-  return std::lerp(table[below], table[below + 1], place - static_cast<double>(below));
 }
 
 double distanceFalloff(const Light& light, double distance) {
@@ -132,24 +132,36 @@ std::optional<ShadowView::Projected> ShadowView::project(const glm::dvec3& point
   if (!(clip.w > 0)) return std::nullopt;
   const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
   const Image& image = map_.depth.image;
-  const double px = std::floor((ndc.x * 0.5 + 0.5) * image.width);
-  const double py = std::floor((ndc.y * 0.5 + 0.5) * image.height);
-  if (!(px >= 0 && py >= 0 && px < image.width && py < image.height)) return std::nullopt;
-  return Projected{ndc, static_cast<int>(px), static_cast<int>(py)};
+  const double px = (ndc.x * 0.5 + 0.5) * image.width, py = (ndc.y * 0.5 + 0.5) * image.height;
+  const double beyond = std::max({-px, -py, px - image.width, py - image.height});
+  if (!(beyond <= kSeam)) return std::nullopt;
+  return Projected{ndc, std::clamp(static_cast<int>(std::floor(px)), 0, image.width - 1),
+                   std::clamp(static_cast<int>(std::floor(py)), 0, image.height - 1), beyond};
 }
 
-// Whether a device depth is the end of 0..1 that lies away from the light, which the map was cleared to.
-bool ShadowView::isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const {
+const ShadowView* ShadowView::find(const std::vector<ShadowView>& maps, const glm::dvec3& point) {
+  const ShadowView* nearest = nullptr;
+  double least = INFINITY;
+  for (const ShadowView& map : maps) {
+    const std::optional<Projected> p = map.project(point);
+    if (!p || (maps.size() == 1 && p->beyond > 0) || p->beyond >= least) continue;
+    nearest = &map;
+    least = p->beyond;
+    if (p->beyond <= 0) break;
+  }
+  return nearest;
+}
+
+float ShadowView::farEnd(const glm::dvec3& point, const glm::dvec3& travel) const {
   const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
   const glm::dvec4 along = clipFromWorld_ * glm::dvec4(travel, 0);
-  const bool grows = along.z * clip.w - along.w * clip.z > 0;
-  return stored == (grows ? 1.0f : 0.0f);
+  return along.z * clip.w - along.w * clip.z > 0 ? 1.0f : 0.0f;
 }
 
 bool ShadowView::holds(const glm::dvec3& point, float stored) const {
   if (map_.depth.encoding != PELLUCID_DEPTH_DEVICE) return holdsSurface(stored);
   const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
-  return stored >= 0 && stored <= 1 && !isFarEnd(point, travel, stored);
+  return stored >= 0 && stored <= 1 && stored != farEnd(point, travel);
 }
 
 double ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const {
@@ -213,6 +225,8 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
   const float stored = *map_.depth.image.at(x, y);
   if (!holds(point, stored)) return found;
   found.kind = Kind::Surface;
+  found.clamped = map_.depth.encoding == PELLUCID_DEPTH_DEVICE &&
+                  isClamped(map_, farEnd(point, -arrivalAt(light_, point).toLight), stored);
   const auto lengthOf = [&](double depth, double step) {
     return std::abs(distanceFrom(point, p, depth + step) - distanceFrom(point, p, depth));
   };

@@ -5,6 +5,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "capture/capture.h"
 
@@ -19,6 +20,10 @@ struct DrawnDepth {
 
 // Depth of a texel that stores a surface. `holds`: true for a stored depth of a surface.
 DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bool(float)>& holds);
+
+// True where a device depth lies on the map's near plane, where engines clamp what lies before it: where
+// light enters is not known. `nothing`: 0 or 1, the depth that the map was cleared to.
+bool isClamped(const ShadowMap& map, float nothing, float stored);
 
 struct Arrival {
   glm::dvec3 toLight;     // unit, from the point
@@ -55,12 +60,17 @@ public:
     // From what lies beside the map; Surface only.
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
+    bool clamped = false;                    // isClamped
   };
-  // Nearest texel.
+  // The first of a light's maps that contains the point. A light of several maps has no seams: where none
+  // does, the nearest one does if the point is at most half a texel outside. nullptr: no map does.
+  static const ShadowView* find(const std::vector<ShadowView>& maps, const glm::dvec3& point);
+
+  // Nearest texel; of the border, at most half a texel outside.
   Lookup at(const glm::dvec3& point) const;
 
-  // The four texels around the point with their bilinear weights; nothing outside the map. In each texel, the
-  // drawn depth is as far off the stored one as in the nearest texel.
+  // The four texels around the point with their bilinear weights; nothing outside the map by more. In each
+  // texel, the drawn depth is as far off the stored one as in the nearest texel.
   struct Tap {
     double weight;
     Lookup found;
@@ -70,8 +80,10 @@ public:
 private:
   struct Projected {
     glm::dvec3 ndc;
-    int x, y;  // texel
+    int x, y;       // texel
+    double beyond;  // texels outside of the map, at most kSeam; not above 0 inside
   };
+  static constexpr double kSeam = 0.5;
   std::optional<Projected> project(const glm::dvec3& point) const;
   // As Lookup::distance, of a depth.
   double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;
@@ -84,7 +96,8 @@ private:
   double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;
   double planarDistance(const glm::dvec3& point, double stored) const;
   double radialDistance(const glm::dvec3& point, double stored) const;
-  bool isFarEnd(const glm::dvec3& point, const glm::dvec3& travel, float stored) const;
+  // The end of 0..1 that lies away from the light, which the map was cleared to.
+  float farEnd(const glm::dvec3& point, const glm::dvec3& travel) const;
 
   const Light& light_;
   const ShadowMap& map_;

@@ -11,14 +11,12 @@
 #include "common/parallel.h"
 #include "common/progress.h"
 #include "reference/ambient.h"
+#include "reference/color.h"
 #include "reference/surface.h"
 #include "reference/translucency.h"
 
 namespace pellucid::harness::reference {
 namespace {
-
-// As halves hold it.
-double sanitized(float e) { return e > 0 ? std::min(double(e), 65504.0) : 0.0; }
 
 glm::dvec3 dividedOrZero(const glm::dvec3& a, const glm::dvec3& b) {
   const auto divide = [](double n, double d) { return d > 0 ? n / d : 0.0; };
@@ -126,8 +124,7 @@ private:
   // E + transmitted / rho.
   void addIrradiance() {
     forEachPixel("translucency", [&](int x, int y, std::size_t i) {
-      const float* e = capture_.irradiance.at(x, y);
-      for (int c = 0; c < 3; ++c) values_[i][c] = sanitized(e[c]);
+      values_[i] = readColor(capture_.irradiance.at(x, y));
       if (settings_.features & PELLUCID_FEATURE_TRANSLUCENCY)
         values_[i] = glm::max(values_[i] + transmitted(x, y, i), 0.0);
     });
@@ -153,10 +150,8 @@ private:
       forEachWanted("diffusion", [&](int x, int y, std::size_t i) { output[i] = diffusion.at(x, y); });
     }
     if (!capture_.albedo.empty())
-      forEachPixel("albedo", [&](int x, int y, std::size_t i) {
-        const float* albedo = capture_.albedo.at(x, y);
-        output[i] *= glm::dvec3(albedo[0], albedo[1], albedo[2]);
-      });
+      forEachPixel("albedo",
+                   [&](int x, int y, std::size_t i) { output[i] *= readColor(capture_.albedo.at(x, y)); });
     result.image = toImage(output);
     return result;
   }

@@ -27,11 +27,11 @@ struct Result {
 
 // The output of the pass, albedo * diffused(E + transmitted / rho), or the debug view; computed in
 // double, rounded to float at the end. `materials` belong to the capture's in order. Pixels of
-// material 0, which the pass leaves alone, are 0. Irradiance that is NaN or negative counts as 0.
-// Light is not gathered: a pixel takes one thickness, whatever gatherSamples asks for. A material pixel without
-// front depth only gets its albedo. Debug views have the layouts of PellucidDebugView, TRANSMITTANCE and
-// OCCLUSION per channel: transmitted / unoccluded and unoccluded / arriving irradiance, 0 where the divisor
-// is 0. Throws InputError naming the capture, field and value.
+// material 0, which the pass leaves alone, are 0. Colors that are NaN, infinite or negative count as 0.
+// Light is not gathered: a pixel takes one thickness, whatever gatherSamples asks for. A material pixel
+// without front depth only gets its albedo. Debug views have the layouts of PellucidDebugView, TRANSMITTANCE
+// and OCCLUSION per channel: transmitted / unoccluded and unoccluded / arriving irradiance, 0 where the
+// divisor is 0. Throws InputError naming the capture, field and value.
 Result compute(const Capture& capture, const std::vector<PellucidMaterial>& materials,
                const Settings& settings);
 

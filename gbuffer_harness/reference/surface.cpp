@@ -175,18 +175,26 @@ glm::dvec3 SurfaceReader::flatStep(int x, int y, const glm::dvec3& position, con
 }
 
 // Displacement along the surface per pixel step, from whichever neighbor of the same material is
-// nearer in depth: the other one may lie across an edge. That of a facing surface when neither can be used.
+// nearer in depth: the other one may lie across an edge. Where a pixel of something else lies between, as of dithered hair, the
+// next pixel stands for the neighbor, half as far off in depth. That of a facing surface when none can be used.
 glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
                                      const glm::dvec3& position) const {
   glm::dvec3 best = flatStep(x, y, position, {stepX, stepY});
   double least = INFINITY;
   for (const int sign : {1, -1}) {
-    const int nx = x + sign * stepX, ny = y + sign * stepY;
-    if (nx < 0 || ny < 0 || nx >= capture_.width || ny >= capture_.height) continue;
-    if (materialAt(nx, ny) != materialAt(x, y)) continue;
-    const std::optional<double> there = planarDepth(depth, nx, ny);
+    const auto planarAt = [&](int away) -> std::optional<double> {
+      const int nx = x + away * sign * stepX, ny = y + away * sign * stepY;
+      if (nx < 0 || ny < 0 || nx >= capture_.width || ny >= capture_.height) return std::nullopt;
+      if (materialAt(nx, ny) != materialAt(x, y)) return std::nullopt;
+      return planarDepth(depth, nx, ny);
+    };
+    const double own = camera_.planarDepth(position);
+    std::optional<double> there = planarAt(1);
+    if (!there)
+      if (const std::optional<double> next = planarAt(2)) there = 0.5 * (own + *next);
     if (!there) continue;
-    const double difference = std::abs(*there - camera_.planarDepth(position));
+    const double difference = std::abs(*there - own);
+    const int nx = x + sign * stepX, ny = y + sign * stepY;
     if (difference < least) {
       least = difference;
       best = double(sign) * (camera_.position({nx + 0.5, ny + 0.5}, *there) - position);

@@ -134,9 +134,8 @@ bool Translucency::usesLightSpace(std::size_t light) const {
 
 std::optional<Translucency::Taps> Translucency::texelsAround(std::size_t light,
                                                              const glm::dvec3& point) const {
-  for (const ShadowView& map : shadows_[light])
-    if (const std::optional<Taps> taps = map.around(point)) return taps;
-  return std::nullopt;
+  const ShadowView* map = ShadowView::find(shadows_[light], point);
+  return map ? map->around(point) : std::nullopt;
 }
 
 // A receiver of the exit surface lies off the depth of its own texel by the slope there; half the diagonal of
@@ -165,7 +164,7 @@ double Translucency::comesThrough(const ShadowView::Lookup& lookup, const Receiv
                                   const glm::dvec3& toLight) const {
   constexpr double kTurned = 0.5;
   const double facing = glm::dot(r.normal, toLight);
-  if (!entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
+  if (lookup.clamped || !entersMedium(lookup, r) || beyondExit(lookup, r, toLight)) return 0;
   if (isOpaque(*r.medium, std::max(0.0, lookup.distance * surfaces_.millimetersPerUnit()))) return 0;
   const double tolerance =
       (ownTolerance(lookup, facing) + lookup.uncertain) * std::clamp(1 + facing / kTurned, 0.0, 1.0);

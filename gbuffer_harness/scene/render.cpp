@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/progress.h"
+#include "scene/light_table.h"
 #include "scene/vector.h"
 
 namespace pellucid::harness {
@@ -224,12 +226,18 @@ glm::dvec3 unshadowedIrradiance(const Light& light, const glm::dvec3& point, con
   const glm::dvec3 toLight = toGlm(light.position) - point;
   const double distance = glm::length(toLight);
   double e = std::max(0.0, glm::dot(toLight, normal) / distance) / square(distance);
-  if (light.range > 0) e *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
+  if (!light.distanceTable.empty())  // in place of the window
+    e *= distance < light.range ? factorAt(light.distanceTable, distance / light.range) : 0;
+  else if (light.range > 0)
+    e *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
   if (light.type == PELLUCID_LIGHT_SPOT) {
     const double outer = std::cos(light.outerConeAngle);
     const double width = std::max(0.001, std::cos(light.innerConeAngle) - outer);
     e *= square(std::clamp((-glm::dot(axis, toLight) / distance - outer) / width, 0.0, 1.0));
   }
+  if (!light.angleTable.empty())
+    e *= factorAt(light.angleTable,
+                  std::acos(std::clamp(-glm::dot(axis, toLight) / distance, -1.0, 1.0)) / std::numbers::pi);
   return color * e;
 }
 

@@ -26,7 +26,7 @@ const char* readDepthRange(const glm::dmat4& m, DepthRange* range) {
     for (int r = 0; r < 4; ++r)
       if (!std::isfinite(m[c][r])) return "has an element that is not finite";
   if (m[0][2] != 0 || m[1][2] != 0 || m[0][3] != 0 || m[1][3] != 0)
-    return "has depth or w depend on x or y; oblique near planes are not supported";
+    return "has depth or w depend on x or y; pass view z (DEPTH_VIEW_Z) and the matrix without its oblique near plane";
   const double scale = std::abs(m[0][0] * m[1][1] - m[1][0] * m[0][1]);
   if (scale == 0) return "maps the image to a line";
   // Pixels keep a size that floats can square.

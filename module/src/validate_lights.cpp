@@ -100,7 +100,8 @@ void checkLight(const Setup& setup, uint32_t index, Findings& out) {
     if (perspective == (l.type == PELLUCID_LIGHT_DIRECTIONAL))
       out.error(field("firstShadowMap"), "names a map with ",
                 perspective ? "a perspective" : "an orthographic",
-                " clipFromWorld, which this type of light cannot have");
+                perspective ? " clipFromWorld; draw a directional light's map again without the perspective (LiSPSM, trapezoid)"
+                            : " clipFromWorld; draw the map of a point or spot light by a perspective from its position");
     else if (perspective) {
       const glm::dvec4 atLight = clip * glm::dvec4(l.position[0], l.position[1], l.position[2], 1);
       const double scale = std::abs(clip[0][3]) + std::abs(clip[1][3]) + std::abs(clip[2][3]);

@@ -171,6 +171,114 @@ TEST_F(Gather, LightEntersThroughTheReceiversMaterialOnly) {
   }
 }
 
+// Depths that an engine clamped to a near plane within the slab do not say where light enters: none comes
+// through, with biases and reversed depth, too. A surface just behind the near plane is one.
+TEST_F(Gather, ClampedDepthsLetNoLightThrough) {
+  for (const std::uint32_t samples : {0u, 8u})
+    for (const bool reversed : {false, true})
+      for (const double bias : {0.0, 0.01}) {
+        const auto lit = [&](double depth, bool hasExit) {
+          Capture c = flatCapture(32, 32, 4);
+          c.lights = {backLight()};
+          ShadowMap map = flatShadowMap(-11, PELLUCID_DEPTH_DEVICE);
+          map.clipFromWorld[10] = reversed ? -0.01 : 0.01;
+          map.clipFromWorld[14] = reversed ? 1 - 0.11 : 0.11;  // near plane at -11; the slab ends at -14
+          map.depthBiasConstant = reversed ? -bias : bias;
+          const double stored = reversed ? 1 - depth : depth;
+          std::fill(map.depth.image.data.begin(), map.depth.image.data.end(),
+                    static_cast<float>(depth < 1 ? stored + map.depthBiasConstant : stored));
+          if (hasExit) map.exitDepth = Image(32, 32, 1, static_cast<float>(stored));
+          c.lights[0].shadowMaps = {map};
+          return replay(c, skin(), gathering(samples));
+        };
+        const Image nothing = lit(1, false);
+        for (const bool hasExit : {false, true})
+          EXPECT_LT(relativeRmse(lit(0, hasExit), nothing), 1e-3)
+              << samples << " reversed " << reversed << " bias " << bias << " exit " << hasExit;
+        // A tenth of a mm behind the near plane.
+        EXPECT_GT(lit(0.001, false).at(16, 16)[0], 1.5f * nothing.at(16, 16)[0])
+            << samples << " reversed " << reversed << " bias " << bias;
+      }
+}
+
+// Alpha-hashed hair in front of a slab lit from behind, as opaque texels in all encodings: light is what the free texels let by.
+TEST_F(Gather, SingleTexelsOfHairArePartialShadow) {
+  constexpr int kTexels = 256;
+  for (const auto& [encoding, away, covered] : {std::tuple(PELLUCID_DEPTH_VIEW_Z, 10.0f, 0.5),
+                                                {PELLUCID_DEPTH_DEVICE, 30.0f, 0.75},
+                                                {PELLUCID_DEPTH_DISTANCE, 30.0f, 0.25}}) {
+    Capture c = flatCapture(48, 48, 4);
+    std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+    c.lights = {backLight()};
+    ShadowMap map = flatShadowMap(-14, encoding, kTexels);
+    map.clipFromWorld[0] = map.clipFromWorld[5] = 1.0 / 20;  // texels of .16 mm
+    const float perUnit = encoding == PELLUCID_DEPTH_DEVICE ? 0.01f : 1.0f;
+    map.exitDepth = Image(kTexels, kTexels, 1, map.depth.image.data[0] + 4 * perUnit);
+    map.casterMaterial.assign(map.depth.image.pixels(), 1);
+    const auto light = [&] {
+      c.lights[0].shadowMaps = {map};
+      const Image out = replay(c, skin(), gathering(8));
+      double sum = 0;
+      for (int y = 8; y < 40; ++y)
+        for (int x = 8; x < 40; ++x) sum += double(out.at(x, y)[0]);
+      return sum;
+    };
+    const double bare = light();
+    std::uint32_t state = 1;
+    int hair = 0;
+    for (std::size_t i = 0; i < map.depth.image.pixels(); ++i) {
+      state = 1664525u * state + 1013904223u;  // Numerical Recipes
+      if ((state >> 8) / double(1 << 24) >= covered) continue;
+      ++hair;
+      map.depth.image.data[i] -= away * perUnit;
+      map.exitDepth.data[i] = map.depth.image.data[i] + 0.1f * perUnit;
+      map.casterMaterial[i] = 0;
+    }
+    EXPECT_NEAR(light() / bare, 1 - hair / double(map.depth.image.pixels()), 0.04) << encoding;
+  }
+}
+
+// Hair in every second pixel, as a checkerboard, over a tilted slab that is lit from before and behind: the skin between stays.
+TEST_F(Gather, SkinBetweenPixelsOfHairStays) {
+  constexpr int kSide = 48, kTexels = 192;
+  const auto front = [](double x) { return 12 + 0.5 * x; };
+  Capture c = flatCapture(kSide, kSide, 4);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const double z = front(((x + 0.5) / kSide * 2 - 1) * kSide / 8);
+      *c.frontDepth.image.at(x, y) = static_cast<float>(z);
+      *c.backDepth.image.at(x, y) = static_cast<float>(z + 4);
+    }
+  Light before = backLight(), behind = backLight();
+  before.direction = {0, 0, -1};
+  before.intensity = 1;
+  ShadowMap map;
+  map.clipFromWorld = kIdentity;
+  map.clipFromWorld[0] = map.clipFromWorld[5] = 1.0 / 16;
+  map.clipFromWorld[10] = -0.01;
+  map.depth = {Image(kTexels, kTexels, 1), PELLUCID_DEPTH_DEVICE};
+  for (int y = 0; y < kTexels; ++y)
+    for (int x = 0; x < kTexels; ++x)
+      *map.depth.image.at(x, y) = static_cast<float>(front(((x + 0.5) / kTexels * 2 - 1) * 16) / 100);
+  before.shadowMaps = {map};
+  c.lights = {before, behind};
+  Capture hairy = c;
+  std::vector<std::uint8_t> skinPixels(c.material.size());
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const auto i = static_cast<std::size_t>(y * kSide + x);
+      const bool within = std::min({x, y, kSide - 1 - x, kSide - 1 - y}) > 3;
+      skinPixels[i] = (x + y) % 2 != 0 && within;
+      if ((x + y) % 2 != 0) continue;
+      hairy.material[i] = 0;
+      hairy.frontDepth.image.data[i] -= 8;
+      for (std::size_t k = 0; k < 3; ++k) hairy.irradiance.data[3 * i + k] = 0;
+    }
+  for (const std::uint32_t samples : {0u, 8u})
+    EXPECT_LT(relativeRmse(replay(hairy, skin(), gathering(samples)), replay(c, skin(), gathering(samples)), skinPixels), 0.04)
+        << samples;
+}
+
 TEST_F(Gather, NothingFromOutsideOrEmptyTexels) {
   Capture c = backlitSlab(1, PELLUCID_DEPTH_VIEW_Z);
   c.backDepth = {};  // a thin slab returns less

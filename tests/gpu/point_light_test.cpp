@@ -258,6 +258,80 @@ TEST_F(PointLights, MapsAreAsFewAsSuffice) {
   EXPECT_EQ(count(spot, PointMaps::Auto), 6u) << "half a sphere is too wide for one";
 }
 
+// Maps of distances that a light 4 mm behind a slab's back draws. Five faces of a cube, which end `widening`
+// of their width beyond 90 degrees.
+std::vector<ShadowMap> mapsBehindASlab(const glm::dvec3& light, double widening) {
+  constexpr int kSize = 128;
+  std::vector<ShadowMap> maps;
+  for (const glm::dvec3& forward : {glm::dvec3(1, 0, 0), {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}}) {
+    const glm::dvec3 right = forward.x != 0 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0),
+                     down = forward.z != 0 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    ShadowMap map;
+    glm::dmat4 clip(0);
+    const glm::dvec3 rows[] = {right / (1 + widening), down / (1 + widening), forward, forward};
+    for (int r = 0; r < 4; ++r) {
+      for (int c = 0; c < 3; ++c) clip[c][r] = rows[r][c];
+      clip[3][r] = -glm::dot(rows[r], light) - (r == 2 ? 0.1 : 0);
+    }
+    map.clipFromWorld = fromGlm(clip);
+    map.viewFromWorld = lookAt(fromGlm(light), fromGlm(light + forward), fromGlm(down));
+    map.depth = {Image(kSize, kSize, 1, kNoDepth), PELLUCID_DEPTH_DISTANCE};
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const glm::dvec3 ray = forward + (1 + widening) * (((x + 0.5) / kSize * 2 - 1) * right +
+                                                           ((y + 0.5) / kSize * 2 - 1) * down);
+        if (ray.z > 0)
+          *map.depth.image.at(x, y) = static_cast<float>((-12 - light.z) / ray.z * glm::length(ray));
+      }
+    maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
+// Faces of exactly 90 degrees, and faces that rounding leaves a gap between. Pixels lie on the faces' edges.
+TEST_F(PointLights, FacesThatDoNotOverlapHaveNoSeam) {
+  Capture c = flatCapture(128, 128, 2);
+  c.clipFromView[0] = 1.0 / 8;
+  c.clipFromView[5] = -1.0 / 8;
+  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+  c.lights = {lamp({0, 0, -16})};
+  for (const std::uint32_t samples : {0u, 8u}) {
+    ReplaySettings settings = gathering(samples);
+    settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    const auto light = [&](double widening, bool byReference) {
+      c.lights[0].shadowMaps = mapsBehindASlab({0, 0, -16}, widening);
+      if (!byReference) return replay(c, skin(), settings);
+      reference::Settings exact;
+      exact.features = settings.features;
+      exact.translucency = settings.translucency;
+      return reference::compute(c, {skin()}, exact).image;
+    };
+    for (const bool byReference : {false, true}) {
+      if (byReference && samples > 0) continue;  // takes minutes
+      const Image overlapping = light(0.03, byReference);
+      for (const double widening : {0.0, -1e-5}) {
+        const Image out = light(widening, byReference);
+        for (const int sx : {1, -1})
+          for (const int sy : {1, -1}) {
+            double sum = 0, expected = 0;
+            for (int t = 40; t < 60; ++t) {  // beyond the face in the middle
+              const int x = sx > 0 ? 64 + t : 63 - t, y = sy > 0 ? 64 + t : 63 - t;
+              sum += double(out.at(x, y)[0]);
+              expected += double(overlapping.at(x, y)[0]);
+              if (samples == 0) {
+                EXPECT_NEAR(out.at(x, y)[0], overlapping.at(x, y)[0], 0.02f * overlapping.at(x, y)[0])
+                    << x << " " << y << " widening " << widening << " reference " << byReference;
+              }
+            }
+            ASSERT_GT(expected, 0.01);
+            // Noise of 8 samples, averaged over 20 pixels.
+            EXPECT_NEAR(sum / expected, 1, 0.05) << sx << " " << sy << " widening " << widening;
+          }
+      }
+    }
+  }
+}
+
 TEST_F(PointLights, MoreMapsThanAPlanBindsAreRefusedByName) {
   Capture c = flatCapture(8, 8);
   Light light = lamp({0, 0, -20});

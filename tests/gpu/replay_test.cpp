@@ -96,6 +96,41 @@ TEST_F(Replay, OutsideTheMapAndEmptyTexelsGiveNoLight) {
   }
 }
 
+// A half that overflowed lights nothing: its pixel and all around have the bits of one that is NaN.
+TEST_F(Replay, InfinityInInputsCountsAsNaNDoes) {
+  Capture c = flatCapture(64, 64, 2);
+  c.albedo = Image(64, 64, 3, 0.5f);
+  c.hiddenIrradiance = Image(64, 64, 3, 1.0f);
+  for (const uint32_t format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT})
+    for (Image Capture::*image : {&Capture::irradiance, &Capture::albedo, &Capture::hiddenIrradiance}) {
+      ReplaySettings s = inFloats();
+      s.irradianceFormat = static_cast<VkFormat>(format);
+      const auto with = [&](float value) {
+        Capture bad = c;
+        (bad.*image).at(30, 33)[0] = value;
+        return replay(bad, testMaterial(), s);
+      };
+      const Image expected = with(kNan);
+      for (const float value : {INFINITY, -INFINITY, 0.0f}) EXPECT_TRUE(sameBits(with(value), expected)) << value;
+      // Nothing but light of the pixel itself is missing.
+      EXPECT_LE(expected.at(34, 33)[0], replay(c, testMaterial(), s).at(34, 33)[0]);
+    }
+}
+
+// Light brighter than a half holds is still light, as a half or as a float.
+TEST_F(Replay, IrradianceBeyondHalvesIsTheLargestHalf) {
+  Capture c = flatCapture(16, 16), brightest = c;
+  for (float& v : c.irradiance.data) v = 3e8f;
+  for (float& v : brightest.irradiance.data) v = 65504;
+  for (const uint32_t format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}) {
+    ReplaySettings s = inFloats();
+    s.irradianceFormat = static_cast<VkFormat>(format);
+    const Image out = replay(c, testMaterial(), s);
+    EXPECT_TRUE(sameBits(out, replay(brightest, testMaterial(), s)));
+    EXPECT_GT(out.at(8, 8)[0], 65000);
+  }
+}
+
 TEST_F(Replay, NoBackDepthAndNoMapIsNeverBright) {
   Capture c = flatCapture(8, 8);
   c.backDepth = {};

@@ -1,12 +1,16 @@
 // `pellucid truth` as a person runs it.
 #include <cstdlib>
 
+#include "capture/read.h"
+#include "capture/write.h"
 #include "cli_fixture.h"
 #include "gltf_builder.h"
+#include "scene/environment.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using namespace pellucid::harness;
 using namespace pellucid::test;
 
 TEST_F(Cli, TruthIsMadeContinuedAndCompared) {
@@ -52,6 +56,47 @@ TEST_F(Cli, TruthTracesThinWalls) {
   expect(0, "info " + file, "thin wall");
   expect(0, "replay " + file + " --repeat 0 -o " + out);
   expect(0, "compare " + out + " " + file + " --limit rel_rmse=0.001 --limit max=0.001");
+}
+
+// Falloff tables and a sky of a capture count in its truth, whose sheet is exact; light that cannot be traced
+// is refused.
+TEST_F(Cli, TruthLikeHonorsTheCapturesLight) {
+  GltfBuilder b;
+  const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  b.json["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"material", 0}}}}}};
+  b.json["materials"] = {{{"name", "paper"}, {"doubleSided", true}}};
+  b.json["nodes"] = {{{"mesh", 0}}};
+  const std::string model = path("sheet.glb"), file = path("c.exr"), out = path("o.exr"),
+                    traced = path("t.exr");
+  std::ofstream(model, std::ios::binary) << b.glb();
+  expect(0, "capture " + model +
+                " --material paper=thin:0.5,0.25,0 --size 24x24 --view 0,0,1 --shadow-size 0 " +
+                "--light point:0.2,0.1,-1:3 -o " + file);
+  Capture capture = readCapture(file);
+  capture.lights[0].range = 3;
+  capture.lights[0].direction = {0, 0, 1};
+  capture.lights[0].angleTable = {1, 0.5, 0.1, 0};
+  capture.lights[0].distanceTable = {0, 0.1, 0.9, 0.2, 1};
+  const std::string like =
+      "truth " + model + " --material paper=thin:0.5,0.25,0 --overwrite --like " + file + " -o " + traced;
+  writeCapture(capture, file, ColorFormat::Float);
+  expect(0, like + " --spp 2");
+  expect(0, "replay " + file + " --repeat 0 -o " + out);
+  expect(0, "compare " + out + " " + traced + " --limit rel_rmse=0.002 --limit max=0.002");
+  // The sky alone: noise of the truth's.
+  capture.lights.clear();
+  capture.environment = Environment{{1, 0.5, 1}, {0.25, 0.5, 0}}.harmonics();
+  capture.backDepth = capture.frontDepth;
+  writeCapture(capture, file, ColorFormat::Float);
+  expect(0, like + " --spp 512");
+  expect(0, "replay " + file + " --set ambient=1 --repeat 0 -o " + out);
+  expect(0, "compare " + out + " " + traced + " --box 4 --limit rel_rmse=0.02");
+  expect(3, like + " --spp 2 --environment uniform:1,1,1", "environment: is not that of --environment");
+  capture.hiddenIrradiance = capture.irradiance;
+  capture.environment.reset();
+  writeCapture(capture, file, ColorFormat::Float);
+  expect(3, like + " --spp 2", "hiddenIrradiance: is of light that no ray finds");
 }
 
 // The numbers that info prints and docs/accuracy.md has, but for 64 samples a pixel and few pixels.
@@ -108,7 +153,8 @@ TEST_F(Cli, TruthAgreesWithCycles) {
       0,
       "truth " + model.string() + " --unit 0.052 --like " + capture.string() + " --spp 2 -o " + path("t.exr"),
       "2 samples each");
-  expect(0, "compare " + path("t.exr") + " " + capture.string() + " --subset lit --limit bias=0.02", "rel_rmse");
+  expect(0, "compare " + path("t.exr") + " " + capture.string() + " --subset lit --limit bias=0.02",
+         "rel_rmse");
   expect(0,
          "compare " + path("t.exr") + " " + capture.string() +
              " --subset lit --box 16 --box-coverage 1 --limit rel_rmse=0.07",

@@ -319,6 +319,34 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
   EXPECT_EQ(scaled.albedo.data[1], 1);
 }
 
+// OpenGL's view z is below 0 before the camera. Read as it is, it would be an empty picture.
+TEST_F(Manifests, NegativeViewZIsRefusedOrScaled) {
+  for (const char* buffer : {"frontDepth", "backDepth"}) {
+    const json before = manifest["buffers"][buffer];
+    manifest["buffers"][buffer] = {{"constant", {-12.5}}, {"encoding", "viewZ"}};
+    expectNames(error(), {std::string("buffers.") + buffer, "negative", "\"scale\": -1"});
+    manifest["buffers"][buffer]["scale"] = -1;
+    const Capture capture = read();
+    const DepthImage& depth = std::string(buffer) == "frontDepth" ? capture.frontDepth : capture.backDepth;
+    EXPECT_EQ(depth.image.at(3, 2)[0], 12.5f);
+    manifest["buffers"][buffer]["scale"] = 0;
+    expectNames(error(), {std::string("buffers.") + buffer, "must not be 0"});
+    manifest["buffers"][buffer] = before;
+  }
+}
+
+// Ray tracers store how far along its ray a pixel's surface lies: of a plane that faces the camera, more to the side.
+TEST_F(Manifests, DistancesAlongRaysBecomeViewZ) {
+  manifest["buffers"]["frontDepth"] = {{"constant", {9.0}}, {"encoding", "distance"}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.frontDepth.encoding, PELLUCID_DEPTH_VIEW_Z);
+  for (const auto& [x, y] : {std::pair(0, 0), {3, 2}, {capture.width - 1, 1}}) {
+    // The sample's clipFromView: x and y are times 2 and -2, over w = -z.
+    const double tx = ((x + 0.5) / capture.width * 2 - 1) / 2, ty = ((y + 0.5) / capture.height * 2 - 1) / 2;
+    EXPECT_NEAR(capture.frontDepth.image.at(x, y)[0], 9 / std::hypot(tx, ty, 1.0), 1e-6) << x << " " << y;
+  }
+}
+
 // Engines have them, and the shared captures, too. Nothing of them is read: not even their file.
 TEST_F(Manifests, NormalsMayBeThere) {
   for (const json& normal :
@@ -472,7 +500,7 @@ constexpr const char* kMistakes = R"(
 /camera/clipFromView/5 | null | null
 /camera/viewFromWorld | [2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1] | rigid
 /camera/viewFromWorld | [1,0,0,5,0,1,0,6,0,0,1,7,0,0,0,1] | column-major
-/buffers/frontDepth/encoding | "distance" | viewZ | distance
+/buffers/frontDepth/encoding | "planar" | viewZ | planar
 /buffers/frontDepth/part | 4 | g.exr | 4
 /buffers/frontDepth/part | -1 | -1
 /buffers/frontDepth/part | 0.5 | 0.5

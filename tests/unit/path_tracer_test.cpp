@@ -7,6 +7,8 @@
 #include "common/error.h"
 #include "pellucid/pellucid_material.h"
 #include "raster/bodies.h"
+#include "reference/ambient.h"
+#include "reference/light.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
 #include "refusal.h"
@@ -306,6 +308,107 @@ TEST(PathTracer, AreaLightsBringWhatTheyShould) {
   EXPECT_NEAR(lit.mean().x, std::numbers::pi, 1e-12);
   EXPECT_NEAR(lit.mean().y, std::numbers::pi / 2, 1e-12);
   EXPECT_NEAR(lit.mean().z, std::numbers::pi * 5 / 6, 3 * lit.standardError().z);
+}
+
+// A sky given by coefficients is the sky.
+TEST(PathTracer, HarmonicsAreTheirEnvironment) {
+  const SceneModel model = oneSolid(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(1)));
+  const auto scene = makeSolidScene(model);
+  const glm::dvec3 n = glm::normalize(glm::dvec3(0.5, 0.7, -0.2));
+  const SurfacePoint point{n, n, n, 0, 1};
+  Emitters sky, coefficients;
+  sky.environment = Environment{{1, 0.5, 1}, {1, 0.5, 0}};
+  coefficients.harmonics = sky.environment->harmonics();
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    PathRandom a(1, 0, i), b(1, 0, i);
+    const glm::dvec3 difference =
+        sampleIrradiance(*scene, sky, point, a) - sampleIrradiance(*scene, coefficients, point, b);
+    EXPECT_LT(glm::length(difference), 1e-12) << i;
+  }
+  // Of all coefficients, the mean over the upper half is the irradiance that the reference makes of them.
+  for (std::size_t k = 1; k < 9; ++k)
+    (*coefficients.harmonics)[k] = {0.1 * double(k % 3), 0.2 - 0.05 * double(k), 0.04 * double(k)};
+  (*coefficients.harmonics)[0] = {3, 3, 3};
+  Mean mean;
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    PathRandom random(2, 0, i);
+    mean.add(sampleIrradiance(*scene, coefficients, point, random));
+  }
+  expectNear(mean, Ambient::irradiance(*coefficients.harmonics, n), 4, "harmonics");
+}
+
+// Every field of a light that the passes honor counts in the truth, too, as the reference has it.
+TEST(PathTracer, LightsAreThoseOfTheReference) {
+  const SceneModel model = oneSolid(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(1)));
+  const auto scene = makeSolidScene(model);
+  const SurfacePoint top{{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, 0, 1};
+  const auto traced = [&](const Light& light) {
+    Emitters emitters;
+    emitters.lights = {light};
+    PathRandom random(1, 0, 0);
+    return sampleIrradiance(*scene, emitters, top, random);
+  };
+  for (const PellucidLightType type :
+       {PELLUCID_LIGHT_DIRECTIONAL, PELLUCID_LIGHT_POINT, PELLUCID_LIGHT_SPOT}) {
+    Light plain;
+    // A new field fails to compile here: add it to the changes below, or refuse it by name in `pellucid
+    // truth`. AreaLightsBringWhatTheyShould is of the radius; errors of tables are of files, and shadow maps
+    // of geometry.
+    [[maybe_unused]] auto& [lightType, position, direction, color, intensity, range, radius, innerConeAngle,
+                            outerConeAngle, angleTable, distanceTable, angleTableError, distanceTableError,
+                            shadowMaps] = plain;
+    lightType = type;
+    position = {2, 6, 1};
+    direction = {-0.5, -1, -0.3};
+    color = {1, 0.5, 0.25};
+    intensity = 40;
+    range = 9;
+    innerConeAngle = 0.1;
+    outerConeAngle = 1.2;
+    const std::pair<const char*, void (*)(Light&)> changes[] = {
+        {"none", [](Light&) {}},
+        {"position",
+         [](Light& l) {
+           l.position = {1, 4, 0};
+         }},
+        {"direction",
+         [](Light& l) {
+           l.direction = {-0.4, -2, 0.5};
+         }},
+        {"color",
+         [](Light& l) {
+           l.color = {0.25, 1, 2};
+         }},
+        {"intensity", [](Light& l) { l.intensity = 7; }},
+        {"range", [](Light& l) { l.range = 6; }},
+        {"innerConeAngle", [](Light& l) { l.innerConeAngle = 0.02; }},
+        {"outerConeAngle", [](Light& l) { l.outerConeAngle = 0.9; }},
+        {"angleTable",
+         [](Light& l) {
+           l.angleTable = {1, 0.25, 0.125, 0};
+         }},
+        {"distanceTable", [](Light& l) {
+           l.distanceTable = {0, 0.5, 0.125, 0.0625};
+         }}};
+    const glm::dvec3 unchanged = traced(plain);
+    for (const auto& [field, change] : changes) {
+      Light light = plain;
+      change(light);
+      if (light.type == PELLUCID_LIGHT_DIRECTIONAL &&
+          (!light.angleTable.empty() || !light.distanceTable.empty()))
+        continue;  // refused by readers of captures
+      const Arrival arrival = arrivalAt(light, {0, 1, 0});
+      const glm::dvec3 expected = arrival.irradiance * std::max(arrival.toLight.y, 0.0),
+                       value = traced(light);
+      EXPECT_LT(glm::length(value - expected), 1e-12 * glm::length(expected)) << type << " " << field;
+      const bool isOfType = type == PELLUCID_LIGHT_SPOT ||
+                            (std::string(field).find("Cone") == std::string::npos &&
+                             (type == PELLUCID_LIGHT_POINT
+                                  ? std::string(field) != "direction"
+                                  : std::string(field) != "position" && std::string(field) != "range"));
+      EXPECT_EQ(value != unchanged, isOfType && std::string(field) != "none") << type << " " << field;
+    }
+  }
 }
 
 // A capture of 8 x 8 pixels of a ball.

@@ -280,6 +280,21 @@ TEST(Reference, EmptyDepths) {
   }
 }
 
+// One pixel that is infinite, NaN or negative has no light, and leaves its surroundings as they are.
+TEST(Reference, InfinityInInputsCountsAsNaNDoes) {
+  const Capture plane = facingPlane(24, 24, 0.5);
+  const auto with = [&](float value) {
+    Capture c = plane;
+    c.irradiance.at(12, 12)[0] = value;
+    return compute(c, {burleyMaterial(0.7)}, {}).image;
+  };
+  const Image expected = with(0);
+  for (const float value : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                            -std::numeric_limits<float>::infinity(), -1.0f})
+    EXPECT_EQ(with(value).data, expected.data) << value;
+  EXPECT_GT(expected.at(12, 12)[1], expected.at(12, 12)[0]);
+}
+
 TEST(Reference, WedgeAndHollowSphereThickness) {
   Capture c = facingPlane(32, 1, 0.5);
   c.backDepth.image = Image(32, 1, 1);

@@ -46,6 +46,10 @@ const Violation kViolations[] = {
        f.frame.options.anchor[3] = 1;
        f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
      }},
+    {"ObliqueNearPlane", "clipFromView", "pass view z (DEPTH_VIEW_Z) and the matrix without",
+     [](Frame& f) { f.frame.clipFromView[2] = 0.1f; }},
+    {"DirectionalWithPerspectiveMap", "lights[0].firstShadowMap", "draw a directional light's map again",
+     [](Frame& f) { f.maps[0].clipFromWorld[7] = 0.1f; }},
     {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",
      [](Frame& f) {
        f.frame.options.materialShift = 4;

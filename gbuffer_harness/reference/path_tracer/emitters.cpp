@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "reference/path_tracer/sampling.h"
 #include "scene/render.h"
@@ -45,6 +46,24 @@ glm::dvec3 fromLight(const TraceScene& scene, const Light& light, const SurfaceP
   return scene.occluded(ray, distance) ? glm::dvec3(0) : e;
 }
 
+// Radiance from a unit direction.
+glm::dvec3 radianceOf(const Harmonics& harmonics, const glm::dvec3& d) {
+  constexpr double pi = std::numbers::pi;
+  const double y1 = std::sqrt(3 / (4 * pi)), y2 = std::sqrt(15 / (4 * pi));
+  const double basis[9] = {std::sqrt(1 / (4 * pi)),
+                           y1 * d.y,
+                           y1 * d.z,
+                           y1 * d.x,
+                           y2 * d.x * d.y,
+                           y2 * d.y * d.z,
+                           std::sqrt(5 / (16 * pi)) * (3 * d.z * d.z - 1),
+                           y2 * d.x * d.z,
+                           y2 / 2 * (d.x * d.x - d.y * d.y)};
+  glm::dvec3 sum(0);
+  for (std::size_t i = 0; i < 9; ++i) sum += basis[i] * toGlm(harmonics[i]);
+  return glm::max(sum, glm::dvec3(0));
+}
+
 }  // namespace
 
 glm::dvec3 sampleIrradiance(const TraceScene& scene, const Emitters& emitters, const SurfacePoint& point,
@@ -59,12 +78,14 @@ glm::dvec3 sampleIrradiance(const TraceScene& scene, const Emitters& emitters, c
       sum += fromLight(scene, *sampled, point, world);
     }
   }
-  if (emitters.environment) {
+  if (emitters.environment || emitters.harmonics) {
     const glm::dvec3 direction = lambertian(point.normal, random);
     const Ray ray{point.position + scene.offset() * point.face, direction};
     // Cosine-distributed: the estimate of E is pi times the radiance.
-    if (!scene.occluded(ray, kInfinity))
-      sum += std::numbers::pi * toGlm(emitters.environment->radiance(direction.y));
+    if (!scene.occluded(ray, kInfinity)) {
+      if (emitters.environment) sum += std::numbers::pi * toGlm(emitters.environment->radiance(direction.y));
+      if (emitters.harmonics) sum += std::numbers::pi * radianceOf(*emitters.harmonics, direction);
+    }
   }
   return sum;
 }

@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "common/parallel.h"
+#include "reference/color.h"
 #include "reference/path_tracer/walk.h"
 
 namespace pellucid::harness::reference {
@@ -23,9 +24,7 @@ std::vector<glm::dvec3> albedoOverRho(const Capture& capture, const std::vector<
   }
   for (std::size_t i = 0; i < scale.size(); ++i) {
     if (capture.material[i] == 0) continue;
-    glm::dvec3 albedo(1);
-    if (!capture.albedo.empty())
-      for (int c = 0; c < 3; ++c) albedo[c] = capture.albedo.data[3 * i + static_cast<std::size_t>(c)];
+    const glm::dvec3 albedo = capture.albedo.empty() ? glm::dvec3(1) : readColor(capture.albedo.data.data() + 3 * i);
     scale[i] = albedo / rho[capture.material[i] - 1u];
   }
   return scale;
@@ -47,8 +46,7 @@ glm::dvec3 TruthTracer::sampleWall(std::size_t pixel, const TraceMedium::Wall& w
   SurfacePoint other = *surface_.points[pixel];
   other.face = -other.face;
   other.normal = -other.normal;
-  const float* e = capture_.irradiance.data.data() + 3 * pixel;
-  const glm::dvec3 reflected = wall.reflectance * glm::dvec3(e[0], e[1], e[2]);
+  const glm::dvec3 reflected = wall.reflectance * readColor(capture_.irradiance.data.data() + 3 * pixel);
   return scale_[pixel] *
          (reflected + wall.transmittance * sampleIrradiance(scene_, emitters_, other, random));
 }
