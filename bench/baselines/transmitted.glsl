@@ -51,7 +51,7 @@ bool thicknessAt(LightConstants light, Incident incident, vec3 position, out flo
   for (uint i = 0u; i < light.meta.z; ++i) {
     ShadowConstants shadow = shadows[light.meta.y + i];
     ShadowReceiver r = projectReceiver(shadow, position);
-    if (!r.inside) continue;
+    if (r.beyond > 0.0) continue;
     float stored = shadowTexel(shadow.meta.x, r.texel);
     if (!shadowHolds(shadow.meta, stored)) return false;
     thickness = lightThickness(storedRay(shadow, r, position, incident), stored) * frame.camera.range.w;
