@@ -391,12 +391,10 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
     if (hasFlag(PELLUCID_FLAG_CHORD_THICKNESS)) face.thickness = s.chord;
   }
   Incident incident = lightAt(light, face.position);
-  float facing = dot(face.normal, incident.toLight), cosine = hidden ? max(facing, 0.0) : 0.0;
-  if (!hidden || angleModel() != PELLUCID_SHADER_ANGLE_NORMAL) {
-    cosine = hiddenCosine(light, s, incident.toLight);
-    face.opposite = 1.0;
-  }
-  Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, face.opposite, vec3(0.0));
+  bool byNormal = hidden && angleModel() == PELLUCID_SHADER_ANGLE_NORMAL;
+  float facing = dot(face.normal, incident.toLight);
+  float cosine = byNormal ? max(facing, 0.0) : hiddenCosine(light, s, incident.toLight);
+  Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, byNormal ? face.opposite : 1.0, vec3(0.0));
   // Most pixels face some lights, whose maps need no reading.
   if (t.arriving * t.visible == vec3(0.0) || (hidden && !mapped)) return t;
   float farthest = hidden || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
