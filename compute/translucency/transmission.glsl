@@ -383,7 +383,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -s.normal), 1.0, vec3(0.0));
   // Exit depths do not say where light enters: it enters the hidden face, which they may hide from the light.
   bool holdsExits = light.meta.w != 0u, hidden = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
-  HiddenFace face = HiddenFace(s.position, s.normal, wall ? 0.0 : -1.0, 1.0);
+  HiddenFace face = HiddenFace(s.position, s.normal, -1.0, 1.0);
   if (hidden) {
     if (!isThin(s)) return kNothingTransmitted;
     face = hiddenFace(s, pixel);
@@ -400,6 +400,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   float farthest = hidden || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
   LightTexels l = lightTexels(light, incident, wall ? 0u : s.material, face.position, hidden ? 0.0 : facing, farthest);
   if (wall) {
+    t.thickness = 0.0; // not by a choice of 0 or -1, which compilers make -0: isWithin refuses that
     t.visible = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0) * unblockedPart(light, l, facing);
   } else if (hidden) {
     t.visible *= litPart(l, facing, holdsExits);
