@@ -78,8 +78,8 @@ TEST_F(EngineMaps, FrontFacesCulled) {
     SCOPED_TRACE(samples);
     const Image image = render(c, samples);
     // On so small a ball points within a tolerance of the face that light leaves by are 2 % of the light. In
-    // a frame that may gather, curved bodies return up to 12 % more than in the frame without a gather.
-    expectNear(meanLit(c, image), meanLit(plain, expected), samples == 0 ? 0.03 : 0.15);
+    // a frame that may gather, curved bodies return up to 19 % more than in the frame without a gather.
+    expectNear(meanLit(c, image), meanLit(plain, expected), samples == 0 ? 0.03 : 0.2);
     // Never white: the light of rims, whose chord is short, is all that is brighter than with the plain map.
     const float brightest = *std::max_element(expected.data.begin(), expected.data.end());
     const auto white = std::count_if(image.data.begin(), image.data.end(),
