@@ -181,9 +181,13 @@ vec3 entryStep(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 
 
 // Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
 vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
-  float scale = map.meta.z == 0u ? 1.0 : y.depth;
-  vec3 normal = cross(entryStep(map, texel, y, ivec2(1, 0), beside.xy, scale * map.stepX.xyz),
-                      entryStep(map, texel, y, ivec2(0, 1), beside.zw, scale * map.stepY.xyz));
+  vec3 steps[2];
+  // Not unrolled, here and below: a copy of each read of the map is a switch over all images, and small frames wait for code.
+  [[dont_unroll]] for (int i = 0; i < 2; ++i) {
+    vec3 across = (map.meta.z == 0u ? 1.0 : y.depth) * (i == 0 ? map.stepX.xyz : map.stepY.xyz);
+    steps[i] = entryStep(map, texel, y, ivec2(1 - i, i), i == 0 ? beside.xy : beside.zw, across);
+  }
+  vec3 normal = cross(steps[0], steps[1]);
   float squared = dot(normal, normal);
   if (!(squared > 0.0)) return toLight;
   return normal * (dot(normal, toLight) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
@@ -225,29 +229,52 @@ float slopeOnPlane(EntryMapConstants map, vec3 position, vec3 normal) {
 // A bound on time: most texels need one step, and later steps change few.
 const int kMostAgain = 3;
 
-// Moves y along its light ray to the surface at its pixel, if y lies on that within what the map leaves open, whichever slope the bias
-// had: that of the map, or that of the surface at the pixel, which leads to another pixel. `asDrawn`: what the texel stores.
-bool moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, bool hidden, vec3 toLight, float tolerance, float uncertain,
-                   inout MapPoint y, inout PixelSurface s) {
+// What the camera tells of a texel's surface: the front at the pixel of the texel's point, and whether the texel stores that.
+struct Told {
+  PixelSurface shown;
+  bool isShown;
+};
+
+// Moves y along its light ray to the surface at its pixel, and takes that surface's normal, if y lies on it within what the map leaves
+// open. A bias had the slope of the map, or that of the surface at the pixel, which leads to another pixel. Behind a biased map's front
+// may lie the back that the front hides. Limbs tell only those maps more than they know. `asDrawn`: what the texel stores.
+Told moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, vec3 toLight, float tolerance, float uncertain, inout MapPoint y,
+                   inout vec3 normal) {
+  bool parallel = map.meta.z == 0u, slopes = map.offsets.y != 0.0 && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE;
+  bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0, hidden = false;
+  Told told;
+  told.isShown = false;
   MapPoint tried = y;
-  [[dont_unroll]] for (int i = 0; i <= kMostAgain; ++i) {
-    PixelSurface next = surfaceUnder(tried.position, hidden);
-    if (!(next.depth > 0.0)) return false;
+  int again = 0;
+  [[dont_unroll]] for (int i = 0; i < 2 * (kMostAgain + 1); ++i) {
+    PixelSurface s = surfaceUnder(tried.position, hidden);
+    if (i == 0) told.shown = s;
     // An offset along normals is undone by its mean, which is off by as much where the light grazes.
-    if (liesOn(next, toLight, tolerance, uncertain, abs(map.offsets.z))) {
+    if (liesOn(s, toLight, tolerance, uncertain, abs(map.offsets.z)) && (biased || slopeToCamera(s.pixel, s.normal) < kSteepestSeen)) {
+      normal = s.normal;
+      told.isShown = !hidden;
+      if (told.isShown) told.shown = s;
+      if (!biased) break;
       // Per depth, which is not 0, towards the light or from it.
-      vec3 ray = map.meta.z == 0u ? map.ray.xyz : (tried.position - map.ray.xyz) / tried.depth;
-      float along = max(dot(next.normal, toLight), kLeastCosine) * length(ray), step = next.above / max(along, 1.0e-12);
-      if (map.meta.z == 0u) step = -step;
+      vec3 ray = parallel ? map.ray.xyz : (tried.position - map.ray.xyz) / tried.depth;
+      float along = max(dot(s.normal, toLight), kLeastCosine) * length(ray), step = s.above / max(along, 1.0e-12);
+      if (parallel) step = -step;
       y = MapPoint(tried.position + step * ray, tried.depth + step);
-      s = next;
-      return true;
+      break;
     }
-    if (map.offsets.y == 0.0 || map.meta.y != PELLUCID_SHADER_DEPTH_DEVICE) return false;
-    tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, next.normal));
-    if (!(abs(tried.depth) < kNoDepth)) return false;
+    bool goesOn = slopes && s.depth > 0.0 && again < kMostAgain;
+    if (goesOn) {
+      ++again;
+      tried = pointOf(map, texel, asDrawn - map.offsets.x - map.offsets.y * slopeOnPlane(map, tried.position, s.normal));
+      goesOn = abs(tried.depth) < kNoDepth;
+    }
+    if (goesOn) continue;
+    if (hidden || !biased || !hasFlag(PELLUCID_FLAG_BACK_DEPTH)) break;
+    hidden = true;
+    again = 0;
+    tried = y;
   }
-  return false;
+  return told;
 }
 
 // ---- The entry point
@@ -269,19 +296,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
 
   // Where the camera tells the surface, it knows the normal. The map's neighbors miss normals of surfaces that the light grazes,
   // and between triangles that a slope bias moved apart: light would seem to come through between points of one lit surface.
-  PixelSurface shown = surfaceUnder(y.position, false);
-  bool biased = map.offsets.y != 0.0 || map.offsets.z != 0.0, isShown;
-  if (biased) {
-    // The camera knows more of limbs than a map whose points a bias moved, and it knows the faces behind them.
-    PixelSurface met = shown;
-    isShown = moveToSurface(map, texel, asDrawn, false, toLight, tolerance, uncertain, y, met);
-    if (isShown) shown = met;
-    if (isShown || (hasFlag(PELLUCID_FLAG_BACK_DEPTH) && moveToSurface(map, texel, asDrawn, true, toLight, tolerance, uncertain, y, met)))
-      normal = met.normal;
-  } else {
-    isShown = liesOn(shown, toLight, tolerance, uncertain, 0.0) && slopeToCamera(shown.pixel, shown.normal) < kSteepestSeen;
-    if (isShown) normal = shown.normal;
-  }
+  Told told = moveToSurface(map, texel, asDrawn, toLight, tolerance, uncertain, y, normal);
 
   bool clamped = isClamped(map.meta, map.offsets, asDrawn), opaque = clamped;
   float share = parallel ? 1.0 : shareOfLight(lights[map.map.w], toLight, distance(map.ray.xyz, y.position));
@@ -300,7 +315,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
       exit = max(dot(y.position - behind.position, toLight) + map.offsets.z, 0.0); // the exit has no offset
   }
   float cosine = max(dot(normal, toLight), 0.0);
-  bool seen = isShown || cameraSees(shown, normal, tolerance, uncertain * cosine);
+  bool seen = told.isShown || cameraSees(told.shown, normal, tolerance, uncertain * cosine);
   // Without diffusion what the camera sees stays where it is.
   float seenShare = seen && hasFlag(PELLUCID_FLAG_DIFFUSED) ? share : 0.0;
   return packEntry(EntryPoint(y.depth, normal, seen ? 0.0 : share, seenShare, cosine, exit, material, opaque));
