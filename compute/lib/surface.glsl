@@ -25,10 +25,13 @@ float nearerStep(float forwards, float backwards) {
   return abs(step) < kNoStep ? step : 0.0;
 }
 
-// The same for changes of position. w: 1 where there is a neighbor, and 0.
+// The same for changes of position; w: 1 where there is a neighbor, and 0. Changes of like length, as on curved surfaces, count alike:
+// a choice between them would follow rounding.
 vec3 nearerStep(vec4 forwards, vec4 backwards) {
-  bool nearer = backwards.w > 0.0 && (forwards.w == 0.0 || dot(backwards.xyz, backwards.xyz) < dot(forwards.xyz, forwards.xyz));
-  return nearer ? backwards.xyz : forwards.w * forwards.xyz;
+  float f = dot(forwards.xyz, forwards.xyz), b = dot(backwards.xyz, backwards.xyz);
+  if (forwards.w == 0.0 || backwards.w == 0.0) return forwards.w * forwards.xyz + backwards.w * backwards.xyz;
+  float ratio = min(f, b) / max(max(f, b), 1.0e-30), far = ratio * ratio / (1.0 + ratio * ratio);
+  return b < f ? mix(backwards.xyz, forwards.xyz, far) : mix(forwards.xyz, backwards.xyz, far);
 }
 
 // From a pixel of planar distance `front` along an axis of the image. `step`: Camera::rayX or rayY; `direction`: of the pixel's
