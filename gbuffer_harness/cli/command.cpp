@@ -105,7 +105,11 @@ PELLUCID_OPTION(std::vector<double>)
 
 template <class Flag>
 CommandOption Command::flag(const char* name, Flag& to, const std::string& help) const {
-  CLI::Option* const option = app_->add_flag(name, to, help);
+  CLI::Option* option;
+  if constexpr (std::is_same_v<Flag, bool>)
+    option = app_->add_flag(name, to, help);
+  else  // CLI11 2.1 sets an absent flag of this type to false
+    option = app_->add_flag_function(name, [&to](std::int64_t count) { to = count > 0; }, help);
   if (!group_.empty()) option->group(group_);
   return CommandOption(option);
 }

@@ -379,9 +379,10 @@ private:
 }  // namespace
 
 bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
+  if (!f.lights.fitPlan()) return false;  // the list of lights has no room for their groups
   Planner planner(f, *plan);
   Flow(planner, reused).addAll();
-  return planner.finish() && f.lights.fitPlan();
+  return planner.finish();
 }
 
 std::span<const Pass* const> allPasses() { return kPasses; }

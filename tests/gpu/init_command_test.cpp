@@ -51,6 +51,21 @@ TEST_F(InitCommand, ABufferOfNormalsChangesNoBit) {
   EXPECT_EQ(bytes("o.exr"), without);
 }
 
+// Without a flag, the depth of the background says which plane has 1.
+TEST_F(InitCommand, AnAbsentFlagIsAGuess) {
+  for (const char* way : {"--reversed-z", "--forward-z"}) {
+    ASSERT_EQ(run("capture --procedural sphere --size 32x24 --depth device " + std::string(way) + " -o " + path("d.exr")).code, 0);
+    const auto manifest = [&](const std::string& flag) {
+      EXPECT_EQ(run("init " + path("d.exr") + " --fov 20 --near 10 " + flag + " -o " + path("d.json")).code, 0);
+      return bytes("d.json");
+    };
+    const std::string guessed = manifest("");
+    EXPECT_FALSE(guessed.empty());
+    EXPECT_EQ(guessed, manifest(way));
+    EXPECT_NE(manifest("--reversed-z"), manifest("--forward-z"));
+  }
+}
+
 TEST_F(InitCommand, NamesWhatItNeeds) {
   const std::string init = "init " + path("s.exr") + " -o " + path("c.json");
   expect(2, init, "--fov: is needed");
