@@ -94,10 +94,14 @@ PixelSurface surfaceUnder(vec3 position, bool hidden) {
   uint material = materialAt(inImage(pixel));
   float depth = hidden ? backAt(pixel, material) : frontDistance(inImage(pixel));
   ivec2 of = pixel;
-  if (!hidden && material == 0u && depth > 0.0) depth = frontUnderHair(pixel, of, material);
+  if (!hidden && material == 0u && depth > 0.0) {
+    float skin = frontUnderHair(pixel, of, material);
+    depth = skin >= depth ? skin : -1.0; // through a gap, what lies behind is seen
+  }
   if (material == 0u || !(depth > 0.0)) return s;
-  s.depth = depth;
   s.normal = hidden ? normalOfBack(pixel, depth, material) : normalOfPixel(of, depth, material);
+  if (s.normal == vec3(0.0)) return s;
+  s.depth = depth;
   ViewRay ray = viewRay(frame.camera, pixel);
   s.above = dot(s.normal, position - ray.origin - depth * ray.direction);
   return s;
@@ -148,14 +152,14 @@ const int kHairReach = 3; // texels
 
 // One texel's step along an axis from y, where both neighbors store what is nearer to the light: single texels of hair, as alpha
 // hashing and dithering draw them. The next texels of y's own surface tell, or the surface faces the light. `across`: of a texel.
-vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec3 across, float squaredStep) {
+vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec3 across, float squaredStep, float shift) {
   [[dont_unroll]] for (int i = 2; i < 2 * kHairReach; ++i) {
     int away = (i >> 1) + 1, side = (1 - 2 * (i & 1)) * away;
     ivec2 neighbor = texel + side * axis;
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy)))) continue;
     float theirs = shadowTexel(map.meta.x, firstTexel(map.occluder) + neighbor);
     if (!shadowHolds(map.meta, theirs)) continue;
-    vec3 toward = (pointOf(map, neighbor, theirs - map.offsets.x).position - y.position) / float(side);
+    vec3 toward = (pointOf(map, neighbor, theirs + shift).position - y.position) / float(side);
     if (dot(toward, toward) < kSquaredEdge * squaredStep) return toward;
   }
   return across;
@@ -163,7 +167,7 @@ vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis
 
 // One texel's step along an axis of the map from y. `stored`: of the neighbors forwards and backwards; `across`: a texel's step at the
 // depth of y.
-vec3 entryStep(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 stored, vec3 across) {
+vec3 entryStep(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 stored, vec3 across, float shift) {
   vec4 steps[2] = vec4[](vec4(0.0), vec4(0.0));
   float squaredStep = dot(across, across);
   int hairs = 0;
@@ -172,20 +176,22 @@ vec3 entryStep(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec2 
     ivec2 neighbor = texel + side * axis;
     if (any(lessThan(neighbor, ivec2(0))) || any(greaterThanEqual(neighbor, ivec2(map.map.xy))) || !shadowHolds(map.meta, stored[i])) continue;
     MapPoint there = pointOf(map, neighbor, stored[i]);
+    if (!(abs(there.depth) < kNoDepth)) continue;
     steps[i] = vec4(float(side) * (there.position - y.position), 1.0);
     bool nearer = map.meta.z == 0u ? there.depth > y.depth : there.depth < y.depth;
     hairs += nearer && dot(steps[i].xyz, steps[i].xyz) >= kSquaredHair * squaredStep ? 1 : 0;
   }
-  return hairs == 2 ? slopeBetweenHair(map, texel, y, axis, across, squaredStep) : nearerStep(steps[0], steps[1]);
+  return hairs == 2 ? slopeBetweenHair(map, texel, y, axis, across, squaredStep, shift) : nearerStep(steps[0], steps[1]);
 }
 
-// Unit normal towards the light of the surface at y; towards the light itself where no neighbor says.
-vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, vec3 toLight) {
+// Unit normal towards the light of the surface at y; towards the light itself where no neighbor says. `beside`: without biases;
+// `shift`: what that took from the stored depths.
+vec3 mapNormal(EntryMapConstants map, ivec2 texel, MapPoint y, vec4 beside, float shift, vec3 toLight) {
   vec3 steps[2];
   // Not unrolled, here and below: a copy of each read of the map is a switch over all images, and small frames wait for code.
   [[dont_unroll]] for (int i = 0; i < 2; ++i) {
     vec3 across = (map.meta.z == 0u ? 1.0 : y.depth) * (i == 0 ? map.stepX.xyz : map.stepY.xyz);
-    steps[i] = entryStep(map, texel, y, ivec2(1 - i, i), i == 0 ? beside.xy : beside.zw, across);
+    steps[i] = entryStep(map, texel, y, ivec2(1 - i, i), i == 0 ? beside.xy : beside.zw, across, shift);
   }
   vec3 normal = cross(steps[0], steps[1]);
   float squared = dot(normal, normal);
@@ -255,11 +261,13 @@ Told moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, vec3 toLig
       told.isShown = !hidden;
       if (told.isShown) told.shown = s;
       if (!biased) break;
-      // Per depth, which is not 0, towards the light or from it.
+      // Per depth, which is not 0; of parallel light towards the light, else away from it.
       vec3 ray = parallel ? map.ray.xyz : (tried.position - map.ray.xyz) / tried.depth;
-      float along = max(dot(s.normal, toLight), kLeastCosine) * length(ray), step = s.above / max(along, 1.0e-12);
+      // Where the light grazes, it moves part of the way; from behind, a plane says nothing.
+      float cosine = dot(s.normal, toLight), step = cosine > 0.0 ? s.above / max(max(cosine, kLeastCosine) * length(ray), 1.0e-12) : 0.0;
       if (parallel) step = -step;
-      y = MapPoint(tried.position + step * ray, tried.depth + step);
+      MapPoint moved = MapPoint(tried.position + step * ray, tried.depth + step);
+      y = parallel || moved.depth > 0.0 ? moved : tried; // not behind the light
       break;
     }
     bool goesOn = slopes && s.depth > 0.0 && again < kMostAgain;
@@ -290,7 +298,7 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   if (!(abs(y.depth) < kNoDepth)) return kNoEntry;
   bool parallel = map.meta.z == 0u;
   vec3 toLight = parallel ? map.toLight.xyz : normalize(map.ray.xyz - y.position);
-  vec3 normal = mapNormal(map, texel, y, stored.beside, toLight);
+  vec3 normal = mapNormal(map, texel, y, stored.beside, stored.own - asDrawn, toLight);
   float tolerance = map.seen.x * (parallel ? 1.0 : abs(y.depth)); // half a texel
   if (uncertain > 0.0) uncertain = min(distance(pointOf(map, texel, stored.own + uncertain).position, y.position), kNoDepth);
 

@@ -69,7 +69,8 @@ const float kNearRounding = 1.0e-7; // of device depths, besides the map's small
 // and nobody knows where. meta, offsets: of ShadowConstants.
 bool isClamped(uvec4 meta, vec4 offsets, float stored) {
   float near = 1.0 - uintBitsToFloat(meta.w); // the other end holds nothing
-  return meta.y == PELLUCID_SHADER_DEPTH_DEVICE && abs(stored - offsets.x - near) <= max(0.5 * offsets.w, kNearRounding);
+  float off = min(abs(stored - near), abs(stored - offsets.x - near)); // depth clamp comes after the bias, vertices before
+  return meta.y == PELLUCID_SHADER_DEPTH_DEVICE && off <= max(0.5 * offsets.w, kNearRounding);
 }
 
 // The depth of the surface that was drawn, without the biases that the drawing added; in units of the stored depth.

@@ -193,6 +193,7 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
 vec3 facetAt(ivec2 pixel, uint material, bool back) {
   vec4 beside;
   float own = distanceOf(pixel, material, back);
+  if (!(own > 0.0)) return vec3(0.0);
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 next = pixelBeside(pixel, i);
     beside[i] = distanceOf(next, material, back);
@@ -248,24 +249,25 @@ float meanThickness(vec4 weight, vec4 thickness, uint m) {
 struct Transmitted {
   float thickness; // scene units; -1: no light comes through
   vec3 arriving;   // irradiance of the hidden face before occlusion
-  float visible;   // part that nothing holds back
+  float visible;   // part that no shadow map holds back
+  float opposite;  // factor of how far both faces are opposite: 1 slab, 0 rim
   vec3 front;      // irradiance of the visible face, of which a thin body returns less than a half-space does; 0: returns all
 };
 
-const Transmitted kNothingTransmitted = Transmitted(-1.0, vec3(0.0), 0.0, vec3(0.0));
+const Transmitted kNothingTransmitted = Transmitted(-1.0, vec3(0.0), 0.0, 1.0, vec3(0.0));
 
 // Least part that a body is taken to return, so that a thin pixel beside a probe of a thick one is no dot.
 const float kLeastKept = 0.25;
 
 // Exitance of material m, besides what the irradiance image has. Most pixels face some lights; T is the expensive part.
 vec3 exitanceOf(Transmitted t, uint m) {
-  vec3 entering = t.arriving * t.visible, any = max(entering, t.front);
+  vec3 entering = t.arriving * (t.visible * t.opposite), any = max(entering, t.front);
   if (!(isWithin(t.thickness, 0.0, kMostFloat) && max(any.r, max(any.g, any.b)) > 0.0)) return vec3(0.0);
   vec3 through = materialTransmittance(m, t.thickness * frame.camera.range.w), exitance = entering * through, kept;
   bool bodies = hasFlag(PELLUCID_FLAG_BODIES) && !isThinWalled(m + 1u);
   if (!bodies && t.front == vec3(0.0)) return exitance;
   for (int c = 0; c < 3; ++c) kept[c] = keptReflectance(materials[m].gather.reflectance[c], through[c]);
-  // Probes take for all irradiance that a thin body returns less of it, though this light is what they miss.
+  // Probes scale all irradiance by what a thin body returns of the light on it. This light is not returned: it came through.
   if (bodies) return exitance / max(kept, vec3(kLeastKept));
   return exitance - (1.0 - kept) * t.front / materials[m].inverseReflectance.rgb;
 }
@@ -339,7 +341,7 @@ float chordBeside(Surface s, ivec2 pixel) {
 struct HiddenFace {
   vec3 position, normal; // outward
   float thickness;       // of the body, scene units
-  float opposite;        // part of the light that enters there that leaves at the pixel
+  float opposite;        // factor of how far both faces are opposite: 1 slab, 0 rim
 };
 
 HiddenFace hiddenFace(Surface s, ivec2 pixel) {
@@ -371,7 +373,7 @@ bool isAmbient(LightConstants light) {
 
 Transmitted ambientTransmission(Surface s, ivec2 pixel, HiddenFace face) {
   vec3 visible = hasFlag(PELLUCID_FLAG_BODIES) ? vec3(0.0) : ambientIrradiance(s.normal);
-  return Transmitted(face.thickness, hiddenIrradiance(pixel, face.normal), face.opposite, face.opposite * visible);
+  return Transmitted(face.thickness, hiddenIrradiance(pixel, face.normal), 1.0, face.opposite, face.opposite * visible);
 }
 
 // ---- Light through any surface
@@ -380,7 +382,7 @@ Transmitted ambientTransmission(Surface s, ivec2 pixel, HiddenFace face) {
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), ambient = isAmbient(light), mapped = light.meta.z != 0u;
   // A sheet's T is the same at any thickness, and its reflectance is its own.
-  if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -s.normal), 1.0, vec3(0.0));
+  if (ambient && wall) return Transmitted(0.0, hiddenIrradiance(pixel, -s.normal), 1.0, 1.0, vec3(0.0));
   // Exit depths do not say where light enters: it enters the hidden face, which they may hide from the light.
   bool holdsExits = light.meta.w != 0u, hidden = !wall && (!mapped || holdsExits || hasFlag(PELLUCID_FLAG_CAMERA_THICKNESS));
   HiddenFace face = HiddenFace(s.position, s.normal, -1.0, 1.0);
@@ -394,16 +396,16 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool byNormal = hidden && angleModel() == PELLUCID_SHADER_ANGLE_NORMAL;
   float facing = dot(face.normal, incident.toLight);
   float cosine = byNormal ? max(facing, 0.0) : hiddenCosine(light, s, incident.toLight);
-  Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, byNormal ? face.opposite : 1.0, vec3(0.0));
+  Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, 1.0, byNormal ? face.opposite : 1.0, vec3(0.0));
   // Most pixels face some lights, whose maps need no reading.
-  if (t.arriving * t.visible == vec3(0.0) || (hidden && !mapped)) return t;
+  if (t.arriving * t.opposite == vec3(0.0) || (hidden && !mapped)) return t;
   float farthest = hidden || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
   LightTexels l = lightTexels(light, incident, wall ? 0u : s.material, face.position, hidden ? 0.0 : facing, farthest);
   if (wall) {
     t.thickness = 0.0; // not by a choice of 0 or -1, which compilers make -0: isWithin refuses that
     t.visible = clamp(1.0 - facing / kTurnedCosine, 0.0, 1.0) * unblockedPart(light, l, facing);
   } else if (hidden) {
-    t.visible *= litPart(l, facing, holdsExits);
+    t.visible = litPart(l, facing, holdsExits);
   } else {
     vec4 weight = throughWeights(l, facing);
     t.thickness = meanThickness(weight, l.thickness, s.material - 1u);

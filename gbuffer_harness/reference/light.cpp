@@ -54,8 +54,8 @@ DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bo
 
 bool isClamped(const ShadowMap& map, float nothing, float stored) {
   if (map.depth.encoding != PELLUCID_DEPTH_DEVICE) return false;
-  return std::abs(double(stored) - map.depthBiasConstant - (1 - double(nothing))) <=
-         std::max(map.depthStep / 2, 1e-7);
+  const double near = 1 - double(nothing);
+  return std::min(std::abs(stored - near), std::abs(stored - map.depthBiasConstant - near)) <= std::max(map.depthStep / 2, 1e-7);
 }
 
 namespace {

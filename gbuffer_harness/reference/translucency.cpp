@@ -224,7 +224,8 @@ Translucency::LightPath Translucency::cameraSpacePath(std::size_t light, const R
   const double facing = glm::dot(glm::dmat3(world) * face.normal, arrival.toLight);
   const bool byNormal = settings_.angleModel == PELLUCID_ANGLE_NORMAL;
   path.arriving = arrival.irradiance * (byNormal ? std::max(facing, 0.0) : hiddenCosine(r, light, arrival.toLight));
-  path.reaches = (byNormal ? face.opposite : 1) * litPart(light, r, backPoint, facing);
+  path.reaches = litPart(light, r, backPoint, facing);
+  if (byNormal) path.opposite = face.opposite;
   path.thickness = settings_.chordThickness ? *r.chord : face.thickness;
   return path;
 }
@@ -290,7 +291,7 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
     const double thickness = path.thickness * mmPerUnit;
     t.unoccluded += path.reaches * path.arriving;
     if (!(settings_.maximumThickness > 0) || thickness <= double(settings_.maximumThickness))
-      t.transmitted += path.reaches * filter * transmittance(material, thickness) * path.arriving;
+      t.transmitted += path.reaches * path.opposite * filter * transmittance(material, thickness) * path.arriving;
     if (!t.usedThickness && path.arriving != glm::dvec3(0)) t.usedThickness = thickness;
   }
   return t;

@@ -53,7 +53,8 @@ private:
   struct LightPath {
     double thickness = 0;  // scene units
     glm::dvec3 arriving{0};
-    double reaches = 0;  // part of the texels that let it by
+    double reaches = 0;   // part of the texels that let it by
+    double opposite = 1;  // factor of how far both faces are opposite
   };
   using Taps = std::array<ShadowView::Tap, 4>;
 
