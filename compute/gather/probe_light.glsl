@@ -174,8 +174,8 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   rings.entrySide = entrySide(light, rings.map, x.position) * mm * float(1 << rings.level);
   vec2 place = placeInMap(parallel, point);
   uvec4 bits = entryAt(rings.map, place, rings.level);
-  // The slope of the surface counts within an entry point, as in arrivesAt and depthTolerance.
-  rings.tolerance = max(rings.entrySide * (1.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
+  // The slope of the surface counts within an entry point, and a further one stands for curvature and for steps beside hair.
+  rings.tolerance = max(rings.entrySide * (2.0 + min(slopeOf(dot(x.normal, toLight)), kSteepestOwn)), 1.0e-12);
   if (!holdsSurface(bits)) return true;
   float perAhead = parallel ? 1.0 : distanceTo;
   EntryPoint own = unpackEntry(bits);

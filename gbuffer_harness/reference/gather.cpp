@@ -425,7 +425,7 @@ Gather::Place Gather::placeOf(std::size_t light, const Exit& exit) const {
   place.views = &views_[light];
   if (const ShadowView* view = ShadowView::find(views_[light], world)) {
     const ShadowView::Lookup found = view->at(world);
-    place.tolerance = std::max(mm_ * found.texel * (1 + slope), 1e-12);
+    place.tolerance = std::max(mm_ * found.texel * (2 + slope), 1e-12);
     double arrives = 1;
     if (found.kind == ShadowView::Kind::Surface) {
       // None where the lit surface is further ahead than a texel's side makes of the slope.
