@@ -108,7 +108,8 @@ typedef struct PellucidLight {
    * outer angle. */
   float innerConeAngle, outerConeAngle;
   /* The light's range of frame.shadowMaps, at most PELLUCID_MAX_LIGHT_SHADOW_MAPS: 6 for a cube, n for n cascades. A receiver takes the
-   * first map that contains it. 0 maps: nothing shadows the light, and the thickness is the camera-space thickness. */
+   * first map that contains it. 0 maps: nothing shadows the light. It enters the face that a pixel hides, and frame.backDepth gives the
+   * thickness. */
   uint32_t firstShadowMap, shadowMapCount;
   /* Falloff of point and spot lights: indices into options.lightTables plus 1; 0 (default): no table. angleTable has factors by the angle
    * from `direction`. distanceTable has factors by distance. */

@@ -173,8 +173,8 @@ typedef struct PellucidFrameOptions {
    * that no radius needs at this distance. Nearer surfaces are diffused too little. 0 (default): not known. Orthographic cameras need no
    * distance. */
   float nearestDistance;
-  /* 1: all lights have the camera-space thickness, and shadow maps only occlude. 0 (default): lights with a map have the light-space
-   * thickness. Lights without a map always have the camera-space thickness. */
+  /* 1: light of all lights enters the face that a pixel hides, frame.backDepth gives the thickness, and shadow maps only occlude. 0
+   * (default): lights with a map of front faces have the light-space thickness. Others are always as with 1. */
   uint32_t cameraThickness;
 
   /* ---- other light ---- */
@@ -235,8 +235,8 @@ typedef struct PellucidShadowMapOptions {
   uint32_t offset[2];
   /* Layer of the shadow image, 0..65535; above 0 only with PellucidContextOptions::shadowViewType 2D_ARRAY. */
   uint32_t layer;
-  /* 1: the map holds back faces, drawn with front faces culled. The light then has the camera-space thickness, needs frame.backDepth, and
-   * is not gathered. Receivers beyond the stored face are in shadow. All maps of a light must have the same value. 0 (default): front
+  /* 1: the map holds back faces, drawn with front faces culled. The light then enters the face that a pixel hides, needs
+   * frame.backDepth, and is not gathered. Receivers beyond the stored face are in shadow. All maps of a light must have the same value. 0 (default): front
    * faces. */
   uint32_t backFaces;
   /* The light's view matrix: a rotation and a translation, right-handed, -z forward. VIEW_Z and DISTANCE need a valid matrix. DEVICE does

@@ -47,8 +47,8 @@ struct PellucidThesisOptions {
   uint32_t prescaleAngle;
   /* 1: all pixels have the camera's axis as view ray (Whelan 2009). 0 (default): each pixel has its own view ray. */
   uint32_t constantViewDirection;
-  /* 1: camera-space thickness is back depth minus front depth along the view ray. 0 (default): this length times the cosine between N and
-   * the view ray. */
+  /* 1: camera-space thickness is back depth minus front depth along the view ray. 0 (default): this length times the mean of the
+   * cosines of both faces with the view ray. */
   uint32_t chordThickness;
   /* mm, 0..1e9: no light comes through thicker parts. 0 (default): no limit. */
   float maximumThickness;
