@@ -286,12 +286,13 @@ Transmission Translucency::at(const Surface& surface, const PellucidMaterial& ma
     const LightPath path = material.thinWalled ? thinWallPath(i, receiver)
                            : usesLightSpace(i) ? lightSpacePath(i, receiver)
                                                : cameraSpacePath(i, receiver);
-    t.arriving += path.arriving;
+    const glm::dvec3 enters = path.opposite * path.arriving;
+    t.arriving += enters;
     if (!(path.reaches > 0)) continue;
     const double thickness = path.thickness * mmPerUnit;
-    t.unoccluded += path.reaches * path.arriving;
+    t.unoccluded += path.reaches * enters;
     if (!(settings_.maximumThickness > 0) || thickness <= double(settings_.maximumThickness))
-      t.transmitted += path.reaches * path.opposite * filter * transmittance(material, thickness) * path.arriving;
+      t.transmitted += path.reaches * filter * transmittance(material, thickness) * enters;
     if (!t.usedThickness && path.arriving != glm::dvec3(0)) t.usedThickness = thickness;
   }
   return t;
