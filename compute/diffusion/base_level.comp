@@ -92,13 +92,13 @@ vec2 centerOf(uint pixels) {
 
 // ---- Slope: the plane of least squares through a quad's depth, over the 3 x 3 quads around that lie on its surface
 
-// Change of depth per texel along an axis to the neighbor of a quad on one side, 1 or -1; kNoStep: none of its material.
+// Change of depth per texel along an axis to the neighbor of a quad on one side, 1 or -1; kFarthest: none of its material.
 float stepTo(int place, int stride, int side, uint material, float own, float center) {
   int at = place + side * stride;
   uint bits = surfaceAt(at);
   vec2 other = centerOf(pixelsOf(bits));
   float change = (depths[at] - own) / (float(side) + (stride == 1 ? other.x : other.y) - center);
-  return depths[at] > 0.0 && materialOf(bits) == material ? change : kNoStep;
+  return depths[at] > 0.0 && materialOf(bits) == material ? change : kFarthest;
 }
 
 float stepAlong(int place, int stride, uint material, float own, float center) {

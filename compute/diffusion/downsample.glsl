@@ -71,12 +71,12 @@ int surfaceOf(int first, int stride) {
   return surface;
 }
 
-// Change of depth per texel from `center` to its neighbor at a step; kNoStep: none of its material is held.
+// Change of depth per texel from `center` to its neighbor at a step; kFarthest: none of its material is held.
 float stepTo(int first, int stride, Source center, ivec2 at, ivec2 step) {
   ivec2 neighbor = at + step, within = clamp(neighbor, ivec2(0), ivec2(3));
   Source t = sourceAt(tap(first, stride, within.x, within.y));
   bool counts = neighbor == within && t.area != 0.0 && t.material == center.material;
-  return counts ? float(step.x + step.y) * (t.depth - center.depth) : kNoStep;
+  return counts ? float(step.x + step.y) * (t.depth - center.depth) : kFarthest;
 }
 
 float stepAlong(int first, int stride, Source center, ivec2 at, ivec2 axis) {

@@ -68,8 +68,8 @@ EntriesInReach entriesInReach(uint map, uint block, float nearest, float farthes
   float reach = lists.reach.x, side = length(maps[map].stepX.xyz);
   vec2 cells = vec2(cellSide(nearest, lists.maps.y), cellSide(farthest, lists.maps.y));
   cells = vec2(min(cells.x, cells.y), max(cells.x, cells.y));
-  vec3 least = vec3(3.0e38), most = vec3(-3.0e38);
-  vec4 at = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
+  vec3 least = vec3(kFarthest), most = vec3(-kFarthest);
+  vec4 at = vec4(kFarthest, kFarthest, -kFarthest, -kFarthest);
   [[dont_unroll]] for (int i = 0; i < 8; ++i) {
     ViewRay ray = viewRay(frame.camera, first + ivec2(i & 1, i >> 1 & 1) * PELLUCID_BLOCK);
     vec3 corner = ray.origin + (i < 4 ? nearest : farthest) * ray.direction;
@@ -83,8 +83,8 @@ EntriesInReach entriesInReach(uint map, uint block, float nearest, float farthes
     return EntriesInReach(at + vec4(-around, around), levelsOf(cells, vec2(side)));
   }
   // A box around the corners and all within reach of them projects into what its corners span.
-  at = vec4(3.0e38, 3.0e38, -3.0e38, -3.0e38);
-  vec2 depths = vec2(3.0e38, -3.0e38);
+  at = vec4(kFarthest, kFarthest, -kFarthest, -kFarthest);
+  vec2 depths = vec2(kFarthest, -kFarthest);
   bool ahead = true;
   [[dont_unroll]] for (int i = 0; i < 8; ++i) {
     bvec3 far = bvec3((i & 1) != 0, (i & 2) != 0, (i & 4) != 0);
@@ -95,7 +95,7 @@ EntriesInReach entriesInReach(uint map, uint block, float nearest, float farthes
     vec2 entry = vec2(dot(maps[map].column, corner), dot(maps[map].row, corner)) / depth;
     at = vec4(min(at.xy, entry), max(at.zw, entry));
   }
-  if (!ahead) at = vec4(-3.0e38, -3.0e38, 3.0e38, 3.0e38); // next to the light: all of the map
+  if (!ahead) at = vec4(-kFarthest, -kFarthest, kFarthest, kFarthest); // next to the light: all of the map
   return EntriesInReach(at, levelsOf(cells, side * depths));
 }
 

@@ -51,9 +51,9 @@ int indexOf(Window window, ivec2 texel) {
 
 // ---- A level's own part of the kernel, and the coarser levels under it
 
-// Of the stretch, texels: eight reads. It widens kernels in full up to 69 degrees from facing the camera.
+// Texels to both sides that the stretch reads, eight in all: kernels widen in full up to 69 degrees from facing the camera.
 const int kReach = 4;
-// Of the stretch, squared texels: below it a texel beside has less than 1 % of the weight, as little as areas are rounded by.
+// Variance of the stretch, squared texels, from which on it runs. Below, a texel beside has less than 1 % of the weight: areas are rounded by more.
 const float kLeastVariance = 0.02;
 
 // Foreshortened surfaces need a level's kernel longer along one axis: the filter is a 1-D Gaussian of what is missing, at the

@@ -93,11 +93,11 @@ vec3 positive(vec3 v, uint end) {
 
 const uint kInfinity = 0x7F800000u;
 
-// What an image holds, finite and >= 0. Infinity is a half that overflowed, and counts as 0, as NaN does: as the largest half it
-// would light all skin around.
+// A texel's color, finite and >= 0. Infinity is a half that overflowed. It counts as 0, as NaN does, because the largest half would light
+// all skin around the pixel.
 vec3 sanitize(vec3 v) { return positive(v, kInfinity); }
 
-// A color that no other pixel reads, or what is computed: infinity is only large.
+// A color that no other pixel reads, or a computed one: infinity counts as the largest half.
 vec3 limited(vec3 v) { return positive(v, kInfinity + 1u); }
 
 // v rounded to the nearest half, ties up; v >= 0. Image stores may truncate (Vulkan leaves it open), which darkens by up

@@ -32,8 +32,8 @@ GatherSlab gatherSlab(vec4 a, vec4 b, vec4 c, float fraction) {
 const float kOneOverPi = 0.31830989;
 
 // Integral of K(r, h) over the ring between the distances `near` and `far` from x: T [e^{-q (near - h)} - e^{-q (far - h)}] is
-// exact for slabs. Where h grows with r, as on spheres, K falls like T(r): before h, to second order, and beyond h by the part
-// `curved`, 0 to 1. T(r) falls at the rate kappa coth(kappa (r + e)), q / pi on thin bodies and q = kappa on thick ones. A parabola in
+// exact for slabs. Where h grows with r, as on spheres, K falls like T(r). This fall counts to second order before h, and beyond h by
+// the part `curved`, 0 to 1. T(r) falls at the rate kappa coth(kappa (r + e)), q / pi on thin bodies and q = kappa on thick ones. A parabola in
 // kappa / q between both is within 8 %. The channel that spreads furthest decides this slope, because light of the others comes
 // from rings that are small beside it.
 vec3 gatherTransmitted(vec4 lengths, GatherSlab slab, float curved, float h, float near, float far) {
@@ -140,7 +140,8 @@ int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
 }
 
-// An entry point beside an opaque one that is not opaque: single texels of hair hide the surface around them. Else the opaque one.
+// The nearest entry point around an opaque one that is not opaque itself, as single texels of hair hide the surface around them. Where
+// all are opaque, the given one.
 uvec4 besideHair(uint map, vec2 place, int level, uvec4 bits) {
   const int kPlaces = 12; // 4 beside, 4 at the corners, 4 two away
   vec2 size = vec2(maps[map].place.zw);

@@ -64,7 +64,7 @@ vec3 normalOfBack(ivec2 pixel, float back, uint material) {
 }
 
 // Planar distance of the surface that goes on under a pixel of hair, as alpha hashing and dithering draw it: the pixels to both sides
-// have one material. Of two axes the less steep one counts. -1: none. `beside`: one of the two pixels.
+// have one material. The less steep of the two axes counts. -1: there is no such surface. `beside`: one of the two pixels.
 float frontUnderHair(ivec2 pixel, out ivec2 beside, out uint material) {
   float front = -1.0, least = kNoDepth;
   beside = pixel;
@@ -148,10 +148,10 @@ bool cameraSees(PixelSurface s, vec3 normal, float tolerance, float uncertain) {
 const float kSquaredEdge = 4.0;  // squared steps across the light; a step less steep than 60 degrees is no edge
 const float kSquaredHair = 64.0; // what lies nearer by 8 texels may be hair; folds of the surface lie nearer by less
 
-const int kHairReach = 3; // texels
+const int kHairReach = 3; // texels: hair that covers three quarters leaves one of y's surface among four, in the mean
 
-// One texel's step along an axis from y, where both neighbors store what is nearer to the light: single texels of hair, as alpha
-// hashing and dithering draw them. The next texels of y's own surface tell, or the surface faces the light. `across`: of a texel.
+// One texel's step along an axis from y, where both neighbors are hair nearer to the light, as alpha hashing and dithering draw single
+// texels. The step follows from texels of y's surface two or three away, or the surface faces the light. `across`: of a texel.
 vec3 slopeBetweenHair(EntryMapConstants map, ivec2 texel, MapPoint y, ivec2 axis, vec3 across, float squaredStep, float shift) {
   [[dont_unroll]] for (int i = 2; i < 2 * kHairReach; ++i) {
     int away = (i >> 1) + 1, side = (1 - 2 * (i & 1)) * away;
@@ -215,7 +215,7 @@ ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored
   return ShadowTexels(drawn.depth, mix(stored.beside, drawn.depth + stored.beside - stored.own, stores));
 }
 
-// ---- Biases. Where the camera tells the surface, a texel's point is where its light ray meets the surface's plane
+// ---- Biases. A texel's point is where its light ray meets the surface that front or back depths show there
 
 // Largest slope of a surface towards the light: 87 degrees, where less than 5 % of the light comes in.
 const float kLeastAlong = 0.05;
@@ -235,7 +235,7 @@ float slopeOnPlane(EntryMapConstants map, vec3 position, vec3 normal) {
 // A bound on time: most texels need one step, and later steps change few.
 const int kMostAgain = 3;
 
-// What the camera tells of a texel's surface: the front at the pixel of the texel's point, and whether the texel stores that.
+// The front at the pixel of a texel's point, and whether the texel stores that front.
 struct Told {
   PixelSurface shown;
   bool isShown;
@@ -243,7 +243,8 @@ struct Told {
 
 // Moves y along its light ray to the surface at its pixel, and takes that surface's normal, if y lies on it within what the map leaves
 // open. A bias had the slope of the map, or that of the surface at the pixel, which leads to another pixel. Behind a biased map's front
-// may lie the back that the front hides. Limbs tell only those maps more than they know. `asDrawn`: what the texel stores.
+// may lie the back that the front hides. At limbs the camera knows more than a biased map, and less than another. `asDrawn`: the stored
+// depth.
 Told moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, vec3 toLight, float tolerance, float uncertain, inout MapPoint y,
                    inout vec3 normal) {
   bool parallel = map.meta.z == 0u, slopes = map.offsets.y != 0.0 && map.meta.y == PELLUCID_SHADER_DEPTH_DEVICE;
@@ -263,7 +264,7 @@ Told moveToSurface(EntryMapConstants map, ivec2 texel, float asDrawn, vec3 toLig
       if (!biased) break;
       // Per depth, which is not 0; of parallel light towards the light, else away from it.
       vec3 ray = parallel ? map.ray.xyz : (tried.position - map.ray.xyz) / tried.depth;
-      // Where the light grazes, it moves part of the way; from behind, a plane says nothing.
+      // In grazing light the point moves part of the way. A plane that turns away from the light does not move the point.
       float cosine = dot(s.normal, toLight), step = cosine > 0.0 ? s.above / max(max(cosine, kLeastCosine) * length(ray), 1.0e-12) : 0.0;
       if (parallel) step = -step;
       MapPoint moved = MapPoint(tried.position + step * ray, tried.depth + step);
@@ -302,8 +303,8 @@ uvec4 entryOf(EntryMapConstants map, ivec2 texel) {
   float tolerance = map.seen.x * (parallel ? 1.0 : abs(y.depth)); // half a texel
   if (uncertain > 0.0) uncertain = min(distance(pointOf(map, texel, stored.own + uncertain).position, y.position), kNoDepth);
 
-  // Where the camera tells the surface, it knows the normal. The map's neighbors miss normals of surfaces that the light grazes,
-  // and between triangles that a slope bias moved apart: light would seem to come through between points of one lit surface.
+  // The camera's depths know the surface's normal. The map's neighbors miss normals of surfaces that the light grazes, and between
+  // triangles that a slope bias moved apart: light would seem to come through between points of one lit surface.
   Told told = moveToSurface(map, texel, asDrawn, toLight, tolerance, uncertain, y, normal);
 
   bool clamped = isClamped(map.meta, map.offsets, asDrawn), opaque = clamped;

@@ -16,6 +16,8 @@ bool isWithin(float v, float low, float high) {
 
 const float kAboveOne = 1.00000012; // the next float
 const float kMostFloat = 3.4e38;
+// Beyond all lengths and changes of length, and finite: nothing is there.
+const float kFarthest = 3.0e38;
 
 // `rect`: [xy, zw).
 bool contains(ivec4 rect, ivec2 at) {

@@ -15,7 +15,6 @@ struct ShadowReceiver {
 // A map says nothing about points outside, so that no light comes through them. But cubes and cascades have no seams: where none of
 // a light's maps contains a point, the nearest one does if the point is at most this outside. Faces of 90 degrees leave a rounding between.
 const float kSeam = 0.5;       // texels
-const float kFarBeyond = 3.0e38;
 
 // Texels that a place lies outside of a map of this size.
 float beyondMap(vec2 place, vec2 size) {
@@ -38,7 +37,7 @@ ShadowReceiver projectReceiver(ShadowConstants shadow, vec3 x) {
   vec2 ndc = clip.xy / (inFront ? clip.w : 1.0);
   vec2 place = (ndc * 0.5 + 0.5) * shadow.depth.zw;
   ivec2 texel = ivec2(clamp(floor(place), vec2(0.0), shadow.depth.zw - 1.0));
-  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), place, inFront ? beyondMap(place, shadow.depth.zw) : kFarBeyond);
+  return ShadowReceiver(clip, texel + firstTexel(shadow.occluder), place, inFront ? beyondMap(place, shadow.depth.zw) : kFarthest);
 }
 
 // The four texels around a receiver, of the image, and their bilinear weights: low, (high.x, low.y), (low.x, high.y), high.
@@ -85,7 +84,7 @@ const float kMissedSlope = 0.3;
 // A texel's change of depth along an axis, x: to the nearer of its two neighbors, as the other may lie across an edge;
 // 0 where there is none. y: how much that may miss, as far as the other neighbor says so.
 vec2 stepAlong(float own, vec2 beside, bvec2 holds) {
-  vec2 change = vec2(1.0, -1.0) * (beside - own), apart = mix(vec2(3.0e38), abs(change), holds);
+  vec2 change = vec2(1.0, -1.0) * (beside - own), apart = mix(vec2(kFarthest), abs(change), holds);
   float least = min(apart.x, apart.y);
   if (!any(holds)) return vec2(0.0);
   return vec2(least, max(kMissedSlope * least, all(holds) ? abs(change.x - change.y) : least));

@@ -16,17 +16,15 @@ float keptReflectance(vec4 slab, float t) { return clamp(slab.x - sqrt(max(slab.
 
 // ---- The nearer of two neighbors along an axis, as the other one may lie across an edge
 
-const float kNoStep = 3.0e38; // there is no such neighbor
-
-// Change of depth along the axis: the lesser of the changes to the neighbors forwards and backwards, each per step forwards.
-// 0 where there is no neighbor.
+// Change of depth along the axis: the lesser of the changes to the neighbors forwards and backwards, each per step forwards. A change of
+// kFarthest stands for a missing neighbor; where both are missing, the result is 0.
 float nearerStep(float forwards, float backwards) {
   float step = abs(backwards) < abs(forwards) ? backwards : forwards;
-  return abs(step) < kNoStep ? step : 0.0;
+  return abs(step) < kFarthest ? step : 0.0;
 }
 
-// The same for changes of position; w: 1 where there is a neighbor, and 0. Changes of like length, as on curved surfaces, count alike:
-// a choice between them would follow rounding.
+// The same choice between changes of position; w: 1, or 0 without a neighbor. Two changes of like length count alike, as on curved
+// surfaces: a choice between them would follow rounding.
 vec3 nearerStep(vec4 forwards, vec4 backwards) {
   float f = dot(forwards.xyz, forwards.xyz), b = dot(backwards.xyz, backwards.xyz);
   if (forwards.w == 0.0 || backwards.w == 0.0) return forwards.w * forwards.xyz + backwards.w * backwards.xyz;
@@ -37,7 +35,7 @@ vec3 nearerStep(vec4 forwards, vec4 backwards) {
 // From a pixel of planar distance `front` along an axis of the image. `step`: Camera::rayX or rayY; `direction`: of the pixel's
 // ray; `beside`: distances of the neighbors forwards and backwards, <= 0 where there is none.
 vec3 alongDepth(vec4 step, vec3 direction, float front, vec2 beside) {
-  vec2 changes = mix(vec2(kNoStep), vec2(1.0, -1.0) * (beside - front), greaterThan(beside, vec2(0.0)));
+  vec2 changes = mix(vec2(kFarthest), vec2(1.0, -1.0) * (beside - front), greaterThan(beside, vec2(0.0)));
   float change = nearerStep(changes.x, changes.y);
   float planar = abs(changes.y) < abs(changes.x) ? front - change : front + change;
   return change * direction + vec3(step.zw + planar * step.xy, 0.0);

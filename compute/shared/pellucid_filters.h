@@ -38,19 +38,19 @@
 
 // Factors x and y of tangentPlaneWeight (compute/diffusion/texel.glsl). `./run sweep CONSTANT VALUE...` measures others.
 
-// Of downsampling. Measured: scenes of `./run sweep`.
+// Falloff of downsampling. Measured: scenes of `./run sweep`.
 #ifndef PELLUCID_DOWNSAMPLE_FALLOFF
 #define PELLUCID_DOWNSAMPLE_FALLOFF 0.2, 0.5
 #endif
-// Of levels that foreshortening widens. Measured: scenes of `./run sweep`.
+// Falloff of levels that foreshortening widens. Measured: scenes of `./run sweep`.
 #ifndef PELLUCID_STRETCH_FALLOFF
 #define PELLUCID_STRETCH_FALLOFF 0.5, 2.5
 #endif
-// Of upsampling. Measured: scenes of `./run sweep`.
+// Falloff of upsampling. Measured: scenes of `./run sweep`.
 #ifndef PELLUCID_UPSAMPLE_FALLOFF
 #define PELLUCID_UPSAMPLE_FALLOFF 0.55, 3.5
 #endif
-// Of the last pass. Measured: scenes of `./run sweep`.
+// Falloff of the last pass. Measured: scenes of `./run sweep`.
 #ifndef PELLUCID_PIXEL_FALLOFF
 #define PELLUCID_PIXEL_FALLOFF 0.45, 1.2
 #endif

@@ -43,7 +43,7 @@ vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
         arriving += enters;
         visible += enters * through.visible;
         if (through.visible > 0.0 && thickness.b < 0.0) thickness.b = through.thickness * mm;
-        LightTexels l = lightTexels(light, lightAt(light, s.position), 0u, s.position, 0.0, kEverywhere);
+        LightTexels l = lightTexels(light, lightAt(light, s.position), 0u, s.position, 0.0, kFarthest);
         if (l.weight != vec4(0.0) && light.meta.w == 0u && thickness.g < 0.0) thickness.g = meanThickness(l.weight, l.thickness, m) * mm;
       }
     }

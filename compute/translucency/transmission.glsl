@@ -136,10 +136,8 @@ struct LightTexels {
   float uncertain; // scene units that the thickness may be off by, besides what depthTolerance says
 };
 
-const float kEverywhere = 3.0e38;
-
 // `material`: index + 1 of the medium, in which x lies; 0: all surfaces count. `farthest`: texels further ahead have no weight;
-// kEverywhere: texels tell what holds light back, and not where light enters.
+// kFarthest: texels tell what holds light back, and not where light enters.
 LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Incident incident, uint material, vec3 x, float cosine,
                         float farthest) {
   ShadowFootprint footprint = footprintOf(shadow, receiver);
@@ -159,7 +157,7 @@ LightTexels lightTexels(ShadowConstants shadow, ShadowReceiver receiver, Inciden
     if (!shadowHolds(shadow.meta, stored)) continue;
     l.thickness[i] = lightThickness(ray, stored + drawn.depth) + shadow.offsets.z;
     // A clamped texel holds light back, but nobody knows the thickness before it.
-    bool unknown = material != 0u && farthest < kEverywhere && isClamped(shadow.meta, shadow.offsets, stored);
+    bool unknown = farthest < kFarthest && isClamped(shadow.meta, shadow.offsets, stored);
     if (l.thickness[i] < farthest && !unknown) l.weight[i] = footprint.weight[i];
     l.uncertain = max(l.uncertain, drawn.uncertain * lengthPerDepth(ray, stored));
   }
@@ -237,7 +235,7 @@ float meanThickness(vec4 weight, vec4 thickness, uint m) {
   if (total <= 0.0) return 0.0;
   float rate = materials[m].inverseReflectance.w * frame.camera.range.w;
   thickness = max(thickness, 0.0);
-  vec4 counted = mix(vec4(3.0e38), thickness, greaterThan(weight, vec4(0.0)));
+  vec4 counted = mix(vec4(kFarthest), thickness, greaterThan(weight, vec4(0.0)));
   float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
   // 0 < sum <= total: the least thickness has a weight above 0. rate > 0: no material's T takes more than 1000 mm to halve.
   float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
@@ -328,14 +326,14 @@ bool isThin(Surface s) {
 
 // The pixel's chord, unless it is shorter than all chords beside: a silhouette that crosses one pixel is no thin part.
 float chordBeside(Surface s, ivec2 pixel) {
-  float least = kEverywhere;
+  float least = kFarthest;
   [[dont_unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 beside = pixelBeside(pixel, i);
     float front = distanceOf(beside, s.material, false), back = distanceOf(beside, s.material, true);
     if (front > 0.0 && back > front) least = min(least, back - front);
   }
   // Rays meet the plane of depths at less than 90 degrees.
-  return least < kEverywhere ? max(s.chord, least / max(abs(s.view.z), 1.0e-3)) : s.chord;
+  return least < kFarthest ? max(s.chord, least / max(abs(s.view.z), 1.0e-3)) : s.chord;
 }
 
 struct HiddenFace {
@@ -399,7 +397,7 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, 1.0, byNormal ? face.opposite : 1.0, vec3(0.0));
   // Most pixels face some lights, whose maps need no reading.
   if (t.arriving * t.opposite == vec3(0.0) || (hidden && !mapped)) return t;
-  float farthest = hidden || wall ? kEverywhere : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  float farthest = hidden || wall ? kFarthest : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
   LightTexels l = lightTexels(light, incident, wall ? 0u : s.material, face.position, hidden ? 0.0 : facing, farthest);
   if (wall) {
     t.thickness = 0.0; // not by a choice of 0 or -1, which compilers make -0: isWithin refuses that

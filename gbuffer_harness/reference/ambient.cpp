@@ -6,6 +6,8 @@
 
 #include "reference/color.h"
 #include "reference/transmittance.h"
+#include "scene/environment.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness::reference {
 
@@ -22,20 +24,11 @@ Ambient::Ambient(const Capture& capture, const SurfaceReader& surfaces,
 // Convolved with the clamped cosine, band by band: pi, 2 pi / 3, pi / 4.
 glm::dvec3 Ambient::irradiance(const Harmonics& environment, const glm::dvec3& n) {
   constexpr double pi = std::numbers::pi;
-  const double y0 = 0.5 / std::sqrt(pi), y1 = std::sqrt(3 / (4 * pi)), y2 = std::sqrt(15 / (4 * pi));
-  const double basis[9] = {y0,
-                           y1 * n.y,
-                           y1 * n.z,
-                           y1 * n.x,
-                           y2 * n.x * n.y,
-                           y2 * n.y * n.z,
-                           std::sqrt(5 / (16 * pi)) * (3 * n.z * n.z - 1),
-                           y2 * n.x * n.z,
-                           y2 / 2 * (n.x * n.x - n.y * n.y)};
+  const std::array<double, 9> basis = harmonicBasis(fromGlm(n));
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i < 9; ++i) {
     const double band = i == 0 ? pi : i < 4 ? 2 * pi / 3 : pi / 4;
-    sum += band * basis[i] * glm::dvec3(environment[i][0], environment[i][1], environment[i][2]);
+    sum += band * basis[i] * toGlm(environment[i]);
   }
   return glm::max(sum, glm::dvec3(0));
 }

@@ -7,6 +7,18 @@
 
 namespace pellucid::harness {
 
+// Real spherical harmonics of a unit direction, in the order of PellucidFrameOptions::ambient.
+inline std::array<double, 9> harmonicBasis(const std::array<double, 3>& direction) {
+  const auto [x, y, z] = direction;
+  const double inversePi = std::numbers::inv_pi;
+  const double y0 = std::sqrt(inversePi) / 2, y1 = std::sqrt(0.75 * inversePi), y2 = std::sqrt(3.75 * inversePi);
+  return {y0,         y1 * y,
+          y1 * z,     y1 * x,
+          y2 * x * y, y2 * y * z,
+          y2 / std::sqrt(12) * (3 * z * z - 1), y2 * x * z,
+          y2 / 2 * (x * x - y * y)};
+}
+
 // Radiance (R, G, B, linear) that is linear in y of the direction it comes from: `up` from +y, `down` from
 // -y.
 struct Environment {

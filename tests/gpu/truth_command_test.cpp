@@ -39,16 +39,21 @@ TEST_F(Cli, TruthRefusesByName) {
   EXPECT_FALSE(fs::exists(path("t.exr")));
 }
 
-// An open sheet, lit from behind, through the whole chain; its light is exact.
-TEST_F(Cli, TruthTracesThinWalls) {
+// A .glb of a triangle of the material "paper", which has two sides.
+std::string paperSheet() {
   GltfBuilder b;
   const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
   b.json["meshes"] = {
       {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"material", 0}}}}}};
   b.json["materials"] = {{{"name", "paper"}, {"doubleSided", true}}};
   b.json["nodes"] = {{{"mesh", 0}}};
+  return b.glb();
+}
+
+// An open sheet, lit from behind, through the whole chain; its light is exact.
+TEST_F(Cli, TruthTracesThinWalls) {
   const std::string model = path("sheet.glb"), file = path("t.exr"), out = path("o.exr");
-  std::ofstream(model, std::ios::binary) << b.glb();
+  std::ofstream(model, std::ios::binary) << paperSheet();
   const std::string scene =
       "truth " + model + " --size 24x24 --spp 2 --light directional:0.5,0,1:2 -o " + file;
   expect(3, scene + " --material paper=thin:0.5,0.25", "\"thin:0.5,0.25\" is not thin:R,G,B");
@@ -61,15 +66,9 @@ TEST_F(Cli, TruthTracesThinWalls) {
 // Falloff tables and a sky of a capture count in its truth, whose sheet is exact; light that cannot be traced
 // is refused.
 TEST_F(Cli, TruthLikeHonorsTheCapturesLight) {
-  GltfBuilder b;
-  const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
-  b.json["meshes"] = {
-      {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"material", 0}}}}}};
-  b.json["materials"] = {{{"name", "paper"}, {"doubleSided", true}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
   const std::string model = path("sheet.glb"), file = path("c.exr"), out = path("o.exr"),
                     traced = path("t.exr");
-  std::ofstream(model, std::ios::binary) << b.glb();
+  std::ofstream(model, std::ios::binary) << paperSheet();
   expect(0, "capture " + model +
                 " --material paper=thin:0.5,0.25,0 --size 24x24 --view 0,0,1 --shadow-size 0 " +
                 "--light point:0.2,0.1,-1:3 -o " + file);

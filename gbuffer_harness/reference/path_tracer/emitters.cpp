@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "reference/path_tracer/sampling.h"
+#include "scene/environment.h"
 #include "scene/render.h"
 #include "scene/vector.h"
 
@@ -48,17 +49,7 @@ glm::dvec3 fromLight(const TraceScene& scene, const Light& light, const SurfaceP
 
 // Radiance from a unit direction.
 glm::dvec3 radianceOf(const Harmonics& harmonics, const glm::dvec3& d) {
-  constexpr double pi = std::numbers::pi;
-  const double y1 = std::sqrt(3 / (4 * pi)), y2 = std::sqrt(15 / (4 * pi));
-  const double basis[9] = {std::sqrt(1 / (4 * pi)),
-                           y1 * d.y,
-                           y1 * d.z,
-                           y1 * d.x,
-                           y2 * d.x * d.y,
-                           y2 * d.y * d.z,
-                           std::sqrt(5 / (16 * pi)) * (3 * d.z * d.z - 1),
-                           y2 * d.x * d.z,
-                           y2 / 2 * (d.x * d.x - d.y * d.y)};
+  const std::array<double, 9> basis = harmonicBasis(fromGlm(d));
   glm::dvec3 sum(0);
   for (std::size_t i = 0; i < 9; ++i) sum += basis[i] * toGlm(harmonics[i]);
   return glm::max(sum, glm::dvec3(0));
