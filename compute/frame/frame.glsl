@@ -65,15 +65,20 @@ float frontDistanceOf(float stored) {
 
 float frontDistance(ivec2 at) { return frontDistanceOf(texelFetch(frontDepthImage, at, 0).x); }
 
-// Planar distance of the back surface, -1 where there is none.
+// Planar distance of the back surface, -1 where there is none. A thickness does not tell the place of the back surface.
 float backDistanceOf(float stored) {
+  if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) return -1.0;
   stored = decodeDepth(stored);
   return hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) ? planarDistanceViewZ(stored) : planarDistance(frame.camera, stored);
 }
 
-// Scene units along the view ray; -1 where no back face is behind the front one. `front`: planar distance of
+// Thickness in mm where the image of back depths holds thicknesses; -1: not known.
+float thicknessOf(float stored) { return isWithin(stored, 0.0, kNoDepth) ? stored : -1.0; }
+
+// Scene units along the view ray, or the stored thickness; -1 where no back face is behind the front one. `front`: planar distance of
 // `frontStored`.
 float chordOf(ViewRay ray, float front, float frontStored, float backStored) {
+  if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) return thicknessOf(backStored) / frame.camera.range.w;
   float back = backDistanceOf(backStored);
   bool device = !hasFlag(PELLUCID_FLAG_BACK_VIEW_Z) && !hasFlag(PELLUCID_FLAG_FRONT_VIEW_Z);
   float difference =

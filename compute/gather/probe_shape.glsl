@@ -112,6 +112,10 @@ const float kCurvatureReach = 0.25;  // of the thickness, as longer ones end out
 // a half-space.
 float thicknessAt(ivec2 pixel, Surface x) {
   if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return kThick;
+  if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) {
+    float stored = thicknessOf(texelFetch(backDepthImage, inImage(pixel), 0).x);
+    return isWithin(stored, 0.0, kThick) ? stored : kThick;
+  }
   BackFace back = backAt(pixel);
   if (!(back.chord > 0.0)) return kThick;
   float chord = back.chord;

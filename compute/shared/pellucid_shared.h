@@ -76,6 +76,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 
 // FrameConstants::flags.x
 #define PELLUCID_FLAG_BACK_DEPTH 1u
+#define PELLUCID_FLAG_BACK_THICKNESS 2u // the image of back depths holds mm
 #define PELLUCID_FLAG_ALBEDO 4u
 #define PELLUCID_FLAG_FRONT_VIEW_Z 8u
 #define PELLUCID_FLAG_BACK_VIEW_Z 16u

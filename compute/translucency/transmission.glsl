@@ -203,8 +203,8 @@ vec3 facetAt(ivec2 pixel, uint material, bool back) {
   return normalOfDepths(frame.camera, inLattice(pixel), own, beside);
 }
 
-// The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: along the view ray,
-// -1: unknown; `material`: index + 1.
+// The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: as Surface has
+// it; `material`: index + 1.
 Surface surfaceOf(ivec2 pixel, ViewRay ray, float planar, float chord, uint material) {
   vec3 view = normalize(ray.direction), normal = facetAt(pixel, material, false);
   if (normal == vec3(0.0)) normal = -view;
@@ -343,6 +343,8 @@ struct HiddenFace {
 };
 
 HiddenFace hiddenFace(Surface s, ivec2 pixel) {
+  // A stored thickness is that of a slab.
+  if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) return HiddenFace(s.position - s.chord * s.normal, -s.normal, s.chord, 1.0);
   vec3 facet = facetAt(pixel, s.material, true), front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
   float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
   // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.

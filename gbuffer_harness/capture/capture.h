@@ -20,6 +20,10 @@ inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0
 
 // Depth value at which a viewZ or distance image holds nothing (manifest: >= 1e9).
 inline constexpr float kNoDepth = 1e10f;
+// Stored distances from here on say that nothing is there.
+inline constexpr float kLeastNoDepth = 1e9f;
+// False where a thickness in mm is not known.
+inline bool holdsThickness(float mm) { return mm >= 0 && mm < kLeastNoDepth; }
 
 struct DepthImage {
   Image image;  // one channel; empty: the capture has none

@@ -109,8 +109,10 @@ struct BufferReader {
 
 // Names of PellucidDepthEncoding and PellucidLightType, by their values.
 const std::vector<std::string> kEncodings = {"device", "viewZ", "distance"},
+                               kBackEncodings = {"device", "viewZ", "distance", "thickness"},
                                kLightTypes = {"directional", "point", "spot"};
-static_assert(PELLUCID_DEPTH_DEVICE == 0 && PELLUCID_DEPTH_VIEW_Z == 1 && PELLUCID_DEPTH_DISTANCE == 2);
+static_assert(PELLUCID_DEPTH_DEVICE == 0 && PELLUCID_DEPTH_VIEW_Z == 1 && PELLUCID_DEPTH_DISTANCE == 2 &&
+              PELLUCID_DEPTH_THICKNESS == 3);
 static_assert(PELLUCID_LIGHT_DIRECTIONAL == 0 && PELLUCID_LIGHT_POINT == 1 && PELLUCID_LIGHT_SPOT == 2);
 
 MaterialMap readMaterialMap(const Field& field, int materialCount) {
@@ -256,7 +258,7 @@ nlohmann::ordered_json lightJson(const Light& light) {
 }
 
 void addMapJson(const ShadowMap& map, nlohmann::ordered_json& json) {
-  json["encoding"] = kEncodings[map.depth.encoding];
+  json["encoding"] = encodingName(map.depth.encoding);
   json["clipFromWorld"] = map.clipFromWorld;
   if (map.viewFromWorld) json["viewFromWorld"] = *map.viewFromWorld;
   if (map.backFaces) json["faces"] = "back";
@@ -357,15 +359,15 @@ std::optional<BufferSource> readTimes(const Field& light, const BufferReader& re
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
   buffers.allowKeys(
       {"frontDepth", "backDepth", "irradiance", "hiddenIrradiance", "normal", "albedo", "material"});
-  const auto depth = [&](const Field& field, DepthImage& image) {
+  const auto depth = [&](const Field& field, DepthImage& image, const std::vector<std::string>& encodings) {
     field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
-    image.encoding = static_cast<PellucidDepthEncoding>(field["encoding"].choice(kEncodings));
+    image.encoding = static_cast<PellucidDepthEncoding>(field["encoding"].choice(encodings));
     refuseScaleOfDevice(field, image.encoding);
     return read(field, 1);
   };
-  manifest.frontDepth = depth(buffers["frontDepth"], manifest.capture.frontDepth);
+  manifest.frontDepth = depth(buffers["frontDepth"], manifest.capture.frontDepth, kEncodings);
   if (const auto field = buffers.find("backDepth"))
-    manifest.backDepth = depth(*field, manifest.capture.backDepth);
+    manifest.backDepth = depth(*field, manifest.capture.backDepth, kBackEncodings);
 
   const Field irradiance = buffers["irradiance"];
   irradiance.allowKeys({"file", "part", "channels", "constant", "scale", "times", "includesAlbedo"});
@@ -501,6 +503,8 @@ std::string readText(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+const char* encodingName(PellucidDepthEncoding encoding) { return kBackEncodings[encoding].c_str(); }
 
 Manifest readManifest(const std::filesystem::path& path) {
   Manifest manifest;

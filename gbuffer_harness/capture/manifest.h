@@ -13,8 +13,8 @@
 
 namespace pellucid::harness {
 
-// Stored distances from here on say that nothing is there.
-inline constexpr float kLeastNoDepth = 1e9f;
+// As manifests spell it.
+const char* encodingName(PellucidDepthEncoding encoding);
 
 // Where one buffer's numbers come from.
 struct BufferSource {

@@ -179,13 +179,15 @@ bool holdsSurface(const DepthImage& depth, std::size_t pixel) {
 // Distances in front of the eye are above 0. Where the sign is another, every pixel would be empty.
 void requirePositive(const BufferSource& source, const DepthImage& depth) {
   if (depth.encoding == PELLUCID_DEPTH_DEVICE) return;
-  const auto within = [](float v) { return v > 0 && v < kLeastNoDepth; };
+  const bool isThickness = depth.encoding == PELLUCID_DEPTH_THICKNESS;
+  const auto within = [&](float v) { return (isThickness ? v >= 0 : v > 0) && v < kLeastNoDepth; };
   const std::vector<float>& values = depth.image.data;
   if (std::any_of(values.begin(), values.end(), within) ||
       std::none_of(values.begin(), values.end(), [&](float v) { return within(-v); }))
     return;
   throw InputError(source.file.string(), source.field,
-                   "holds no depth above 0 but negative ones; give \"scale\": -1, as depths are positive in front of the eye");
+                   isThickness ? "holds no thickness from 0 on but negative ones; a thickness is in mm, and \"scale\" gives the mm of 1"
+                               : "holds no depth above 0 but negative ones; give \"scale\": -1, as depths are positive in front of the eye");
 }
 
 // View z of distances from the eye along the ray. A direction (x, y, -1) whose ray meets the pixel is a solution of two

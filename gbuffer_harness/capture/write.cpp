@@ -40,7 +40,7 @@ struct PartWriter {
   }
   Json addDepth(const DepthImage& depth, const std::string& layer) {
     Json buffer = add(depth.image, layer, "Z", ExrFormat::Float);
-    buffer["encoding"] = depth.encoding == PELLUCID_DEPTH_DEVICE ? "device" : "viewZ";
+    buffer["encoding"] = encodingName(depth.encoding);
     return buffer;
   }
 };

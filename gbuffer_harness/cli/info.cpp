@@ -26,7 +26,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using reference::Camera;
 
-constexpr const char* kEncodings[] = {"device", "viewZ", "distance"};
 constexpr const char* kLightTypes[] = {"directional", "point", "spot"};
 
 struct Range {
@@ -65,14 +64,16 @@ Json imageJson(const BufferSource& source, const Image& image) {
   return json;
 }
 
-// The range of a screen depth is planar distance in scene units, whatever the encoding.
+// The range of a screen depth is planar distance in scene units, whatever the encoding; that of a thickness is in mm.
 Json depthJson(const BufferSource& source, const DepthImage& depth, const Camera& camera) {
   Json json = sourceJson(source);
-  json["encoding"] = kEncodings[depth.encoding];
+  json["encoding"] = encodingName(depth.encoding);
   Range range;
   std::size_t surfaces = 0;
   for (const float value : depth.image.data) {
-    const auto planar = camera.planarDepth(value, depth.encoding);
+    const bool isThickness = depth.encoding == PELLUCID_DEPTH_THICKNESS;
+    if (isThickness && !holdsThickness(value)) continue;
+    const auto planar = isThickness ? std::optional(double(value)) : camera.planarDepth(value, depth.encoding);
     if (!planar) continue;
     ++surfaces;
     range.add(*planar);
@@ -93,7 +94,7 @@ Json storedRange(const Image& depths, PellucidDepthEncoding encoding) {
 Json shadowJson(const ShadowSources& sources, const ShadowMap& map) {
   const PellucidDepthEncoding encoding = map.depth.encoding;
   Json json = sourceJson(sources.depth);
-  json["encoding"] = kEncodings[encoding];
+  json["encoding"] = encodingName(encoding);
   json["size"] = {map.depth.image.width, map.depth.image.height};
   json["range"] = storedRange(map.depth.image, encoding);
   if (sources.exit) {
@@ -191,7 +192,7 @@ private:
 
 void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::string>& sentences) {
   const bool hasBack = !capture.backDepth.image.empty();
-  std::size_t total = 0, noFront = 0, noBack = 0, reversed = 0, badIrradiance = 0, badAlbedo = 0;
+  std::size_t total = 0, noFront = 0, noBack = 0, noThickness = 0, reversed = 0, badIrradiance = 0, badAlbedo = 0;
   for (int y = 0; y < capture.height; ++y) {
     for (int x = 0; x < capture.width; ++x) {
       if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
@@ -207,7 +208,12 @@ void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::
       const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
       noFront += !front;
       if (hasBack) {
-        const auto back = camera.planarDepth(*capture.backDepth.image.at(x, y), capture.backDepth.encoding);
+        const float stored = *capture.backDepth.image.at(x, y);
+        if (capture.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) {
+          noThickness += !holdsThickness(stored);
+          continue;
+        }
+        const auto back = camera.planarDepth(stored, capture.backDepth.encoding);
         noBack += !back;
         constexpr double kRounding = 1e-5;  // both depths may be floats that went through a matrix
         reversed += front && back && *back < *front * (1 - kRounding);
@@ -218,6 +224,7 @@ void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::
   if (total == 0) sentences.push_back("no pixel has a material: the output is the irradiance");
   warnings.count(noFront, total, "material pixels have no front depth");
   warnings.count(noBack, total, "material pixels have no back depth");
+  warnings.count(noThickness, total, "material pixels have no thickness from 0 on: they count as thick");
   warnings.count(reversed, total, "material pixels have their back depth in front of the front depth");
   warnings.count(badIrradiance, total, "material pixels have an irradiance that is negative or not finite");
   warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");

@@ -360,6 +360,7 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
 
 double Gather::thickness(const Surface& surface) const {
   if (!surface.chord) return INFINITY;
+  if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) return *surface.chord * mm_;
   const glm::dvec2 pixel = glm::floor(surfaces_.camera().project(surface.position));
   struct BackFace {
     glm::dvec3 position;

@@ -161,7 +161,10 @@ std::optional<Surface> SurfaceReader::at(int x, int y) const {
     s.normal = facet(s);
     s.middle = s.position;
   }
-  if (!capture_.backDepth.image.empty()) {
+  if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) {
+    const float mm = capture_.backDepth.image.empty() ? -1 : *capture_.backDepth.image.at(x, y);
+    if (holdsThickness(mm)) s.chord = double(mm) / millimetersPerUnit();
+  } else if (!capture_.backDepth.image.empty()) {
     const std::optional<double> back = planarDepth(capture_.backDepth, x, y);
     if (back && *back > *front) s.chord = glm::distance(s.position, camera_.position(center, *back));
   }
@@ -236,6 +239,7 @@ double SurfaceReader::chordBeside(const Surface& s) const {
 
 SurfaceReader::HiddenFace SurfaceReader::hiddenFace(const Surface& s) const {
   const glm::dvec3 front = facet(s);
+  if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) return {s.position - *s.chord * front, -front, *s.chord, 1};
   const std::optional<glm::dvec3> towardsEye = backFacet(s);
   const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
   const double cosine = std::abs(glm::dot(front, s.ray)), other = std::abs(glm::dot(back, s.ray));

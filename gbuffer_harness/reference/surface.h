@@ -18,7 +18,7 @@ struct Surface {
   glm::dvec3 normal;  // unit, towards the eye, of the pixel's quad; against the ray if depths have no plane
   glm::dvec3 middle;  // of the quad, where its surface has that normal
   glm::ivec2 pixel;
-  std::optional<double> chord;  // length of the ray between the front and back surface, > 0
+  std::optional<double> chord;  // length of the ray between the front and back surface, > 0, or the stored thickness
 };
 
 // Quads are squares of 2 x 2 pixels from the image's first pixel on. A quad's surface is its nearest pixel

@@ -66,6 +66,8 @@ float Renderer::encode(const Camera& camera, PellucidDepthEncoding encoding, con
       return static_cast<float>(viewZ);
     case PELLUCID_DEPTH_DISTANCE:
       return static_cast<float>(t);
+    case PELLUCID_DEPTH_THICKNESS:
+      break;  // scenes have back depths
   }
   return nothing(camera, encoding);
 }

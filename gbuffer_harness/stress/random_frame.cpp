@@ -42,7 +42,7 @@ void randomAngles(Random& random, TranslucencySettings& t) {
 }
 
 void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {
-  if (random.chance(0.2)) t.cameraThickness = true;
+  if (random.chance(0.2)) t.cameraThickness = frame.capture.backDepth.encoding != PELLUCID_DEPTH_THICKNESS;
   if (random.chance(0.25)) randomAngles(random, t);
   t.chordThickness = random.chance(0.2);
   if (random.chance(0.15)) t.maximumThickness = static_cast<float>(random.magnitude(0.1, wild ? 1e9 : 100));

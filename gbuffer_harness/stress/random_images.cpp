@@ -217,7 +217,9 @@ float badDepth(Random& random, float front) {
 
 void addDepths(Random& random, bool wild, const View& v, const std::vector<double>& front, Capture& c) {
   c.frontDepth.encoding = random.of({PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z});
-  c.backDepth.encoding = random.chance(0.9) ? c.frontDepth.encoding : PELLUCID_DEPTH_VIEW_Z;
+  c.backDepth.encoding = random.chance(0.1)   ? PELLUCID_DEPTH_THICKNESS
+                         : random.chance(0.9) ? c.frontDepth.encoding
+                                              : PELLUCID_DEPTH_VIEW_Z;
   c.frontDepth.image = Image(v.width, v.height, 1);
   const int bits = random.chance(0.7) ? 32 : random.of({16, 24});
   const float frontNothing = nothing(random, v, c.frontDepth.encoding);
@@ -228,14 +230,17 @@ void addDepths(Random& random, bool wild, const View& v, const std::vector<doubl
   if (random.chance(0.75)) {
     c.backDepth.image = Image(v.width, v.height, 1);
     const double thickness = random.magnitude(0.1, 30) / v.mm;
-    const float backNothing = nothing(random, v, c.backDepth.encoding);
+    const bool stored = c.backDepth.encoding == PELLUCID_DEPTH_THICKNESS;
+    const float backNothing = stored ? -1.0f : nothing(random, v, c.backDepth.encoding);
     Pattern pattern(random, v.width, v.height);
     std::size_t i = 0;
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x, ++i) {
         const double p = front[i] + thickness * (1 + 0.9 * pattern.at(x, y));
-        c.backDepth.image.data[i] =
-            front[i] > 0 && p < v.far ? encoded(v, c.backDepth.encoding, p) : backNothing;
+        const double mm = (p - front[i]) * v.mm;
+        c.backDepth.image.data[i] = !(front[i] > 0 && p < v.far) ? backNothing
+                                    : stored                     ? static_cast<float>(mm)
+                                                                 : encoded(v, c.backDepth.encoding, p);
       }
   }
   if (!wild || random.chance(0.4)) return;

@@ -151,6 +151,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
     if (given(f.*image.field)) flags |= image.flag;
   if (f.options.frontDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_FRONT_VIEW_Z;
   if (f.options.backDepthEncoding == PELLUCID_DEPTH_VIEW_Z) flags |= PELLUCID_FLAG_BACK_VIEW_Z;
+  if (f.options.backDepthEncoding == PELLUCID_DEPTH_THICKNESS) flags |= PELLUCID_FLAG_BACK_THICKNESS;
   if (f.options.cameraThickness == 1) flags |= PELLUCID_FLAG_CAMERA_THICKNESS;
   if (t.constantViewDirection) flags |= PELLUCID_FLAG_CONSTANT_VIEW;
   if (t.chordThickness) flags |= PELLUCID_FLAG_CHORD_THICKNESS;

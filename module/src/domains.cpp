@@ -55,7 +55,7 @@ constexpr auto kFrameFloats = std::to_array<FloatDomain>({
 
 constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, options.frontDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
-    {FIELD(PellucidFrame, options.backDepthEncoding), 0, PELLUCID_DEPTH_VIEW_Z},
+    {FIELD(PellucidFrame, options.backDepthEncoding), 0, PELLUCID_DEPTH_THICKNESS},
     {FIELD(PellucidFrame, options.cameraThickness), 0, 1},
     {FIELD(PellucidFrame, options.debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
     {FIELD(PellucidFrame, options.separateOutput), 0, 1},

@@ -122,6 +122,10 @@ void checkFields(const Inputs& inputs, Findings& out) {
   else if (anchored == 1 && f.options.reuse != PELLUCID_REUSE_NONE && f.options.reuse != PELLUCID_REUSE_ACCUMULATE)
     out.error("options.anchor", "has w 1 with reuse ", f.options.reuse,
               "; light of an earlier frame needs cells that stay with the screen");
+  if (f.options.backDepthEncoding == PELLUCID_DEPTH_DISTANCE)
+    out.error("options.backDepthEncoding", "is ", f.options.backDepthEncoding, "; use DEVICE, VIEW_Z or THICKNESS");
+  if (f.options.backDepthEncoding == PELLUCID_DEPTH_THICKNESS && f.options.cameraThickness == 1 && f.shadowMapCount > 0)
+    out.error("options.cameraThickness", "is 1, but backDepth holds thicknesses, which do not say what a shadow map hides; use 0");
   if (f.options.gatherSamples > 64 || f.options.gatherSamples % 4 != 0)
     out.error("options.gatherSamples", "is ", f.options.gatherSamples, "; needs a multiple of 4, at most 64");
 

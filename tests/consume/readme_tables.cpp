@@ -31,7 +31,7 @@ std::string imagesTable() {
   };
   const Row rows[] = {
       {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z (planar distance) of the visible surface", ""},
-      {PELLUCID_RESOURCE_BACK_DEPTH, "the same, of the nearest back face behind that surface",
+      {PELLUCID_RESOURCE_BACK_DEPTH, "the same, of the nearest back face behind that surface; or the thickness there, mm",
        "light from lights without a shadow map, from maps of back faces, `options.ambient` and "
        "`hiddenIrradiance` does not come through; with a gather, thin parts return as much light as "
        "thick ones"},

@@ -120,11 +120,16 @@ TEST_F(AmbientLight, HiddenIrradianceComesThrough) {
 }
 
 // Seven of nine coefficients at once, of either sign, under a turned camera; one thickness a pixel, and
-// gathered lights beside. The head has hidden irradiance, too.
+// gathered lights beside. The second ear has stored thicknesses, and the head has hidden irradiance, too.
 TEST_F(AmbientLight, AgreesWithTheReference) {
-  for (const char* name : {"ear", "head"}) {
+  for (const auto& [name, stored] : {std::pair("ear", false), {"ear", true}, {"head", false}}) {
     const SceneParameters p{.name = name, .width = 64, .height = 48, .shadowSize = 64};
     Capture c = makeScene(p);
+    if (stored) {
+      c.backDepth.encoding = PELLUCID_DEPTH_THICKNESS;
+      for (size_t i = 0; i < c.backDepth.image.data.size(); ++i)
+        c.backDepth.image.data[i] = static_cast<float>(i % 23) - 2;  // of -1 and -2: not known
+    }
     c.environment = Harmonics{{{3, 2, 1},
                                {0.5, -0.25, 0},
                                {-1, 0.5, 0.25},

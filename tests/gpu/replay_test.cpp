@@ -50,6 +50,34 @@ TEST_F(Replay, SlabTransmitsTOfItsThickness) {
   expectPixel(out, 8, 8, 1 + 6 * std::exp(-1.0), 0.5 + 6 * std::exp(-2.0), 0.25 + 6 * blue, 1e-5);
 }
 
+// A slab's thickness tells all that its back depths tell: light of a hidden face, shadowed or not, light from all around, and what thin
+// bodies return.
+TEST_F(Replay, StoredThicknessIsThatOfASlab) {
+  for (Capture depths : {flatCapture(24, 24, 2), perspectiveCapture(24)}) {
+    depths.lights = {backLight(), backLight(), backLight()};
+    depths.lights[0].direction = {0.6, 0, 0.8};
+    depths.lights[1].shadowMaps = {flatShadowMap(-9.5, PELLUCID_DEPTH_VIEW_Z)};
+    depths.lights[1].shadowMaps[0].backFaces = true;
+    depths.lights[2].shadowMaps = {flatShadowMap(-11.5, PELLUCID_DEPTH_VIEW_Z)};
+    depths.environment = Harmonics{{{1, 0.5, 0.25}}};
+    depths.materials = {PresetMaterial{"skin1"}};
+    Capture stored = depths, unknown = depths, none = depths;
+    const float mm = depths.backDepth.image.data[0] - 10;
+    stored.backDepth = {Image(24, 24, 1, mm), PELLUCID_DEPTH_THICKNESS};
+    unknown.backDepth = {Image(24, 24, 1, -1), PELLUCID_DEPTH_THICKNESS};
+    none.backDepth = {};
+    for (const uint32_t samples : {0u, 8u}) {
+      ReplaySettings s = gathering(samples);
+      s.ambient = true;
+      const Image expected = replay(depths, s), image = replay(stored, s), dark = replay(unknown, s);
+      EXPECT_LT(relativeRmse(image, expected), 1e-4) << samples;
+      EXPECT_GT(image.at(12, 12)[0], 1.2f * dark.at(12, 12)[0]) << samples;
+      if (samples > 0) continue;  // the first of a gather's lights is not the first of a plan
+      EXPECT_LT(relativeRmse(dark, replay(none, s)), 1e-6) << "a thickness that is not known lets no light through";
+    }
+  }
+}
+
 TEST_F(Replay, ShadowMapThicknessEqualsCameraThicknessOnASlab) {
   for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
     Capture c = flatCapture(16, 16, 2);

@@ -335,6 +335,26 @@ TEST_F(Manifests, NegativeViewZIsRefusedOrScaled) {
   }
 }
 
+// A thickness map of 0..1 has its range as the scale. Depths of fronts are none, and neither are those of shadow maps.
+TEST_F(Manifests, ThicknessesStandForBackDepths) {
+  manifest["buffers"]["backDepth"] = {{"constant", {0.25}}, {"encoding", "thickness"}, {"scale", 20}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.backDepth.encoding, PELLUCID_DEPTH_THICKNESS);
+  EXPECT_EQ(capture.backDepth.image.at(3, 2)[0], 5.0f);
+  manifest["buffers"]["backDepth"]["constant"] = {0};
+  EXPECT_EQ(read().backDepth.image.at(3, 2)[0], 0.0f);
+  manifest["buffers"]["backDepth"]["constant"] = {-1};
+  expectNames(error(), {"buffers.backDepth", "no thickness from 0 on", "mm"});
+  for (const char* pointer : {"/buffers/frontDepth/encoding", "/lights/0/shadowMap/encoding"}) {
+    json wrong = manifest;
+    wrong["buffers"]["backDepth"]["constant"] = {1};
+    std::swap(manifest, wrong);
+    manifest[json::json_pointer(pointer)] = "thickness";
+    expectNames(error(), {"encoding", "thickness", "viewZ"});
+    std::swap(manifest, wrong);
+  }
+}
+
 // Ray tracers store how far along its ray a pixel's surface lies: of a plane that faces the camera, more to the side.
 TEST_F(Manifests, DistancesAlongRaysBecomeViewZ) {
   manifest["buffers"]["frontDepth"] = {{"constant", {9.0}}, {"encoding", "distance"}};

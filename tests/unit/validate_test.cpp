@@ -48,6 +48,16 @@ const Violation kViolations[] = {
      }},
     {"ObliqueNearPlane", "clipFromView", "pass view z (DEPTH_VIEW_Z) and the matrix without",
      [](Frame& f) { f.frame.clipFromView[2] = 0.1f; }},
+    {"BackDepthOfDistance", "options.backDepthEncoding", "is 2; use DEVICE, VIEW_Z or THICKNESS",
+     [](Frame& f) { f.frame.options.backDepthEncoding = PELLUCID_DEPTH_DISTANCE; }},
+    {"FrontDepthOfThickness", "options.frontDepthEncoding", "is 3",
+     [](Frame& f) { f.frame.options.frontDepthEncoding = PELLUCID_DEPTH_THICKNESS; }},
+    {"MapOfThickness", "shadowMaps[0].encoding", "is 3", [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_THICKNESS; }},
+    {"ThicknessBehindShadows", "options.cameraThickness", "do not say what a shadow map hides; use 0",
+     [](Frame& f) {
+       f.frame.options.backDepthEncoding = PELLUCID_DEPTH_THICKNESS;
+       f.frame.options.cameraThickness = 1;
+     }},
     {"DirectionalWithPerspectiveMap", "lights[0].firstShadowMap", "draw a directional light's map again",
      [](Frame& f) { f.maps[0].clipFromWorld[7] = 0.1f; }},
     {"MaterialMaskBelowShift", "options.materialMask", "whose last bits materialShift 4 drops",

@@ -127,7 +127,10 @@ typedef enum PellucidDepthEncoding {
   /* Planar distance in front of the eye, scene units, above 0. Values <= 0, values >= 1e9 and NaN: no surface. */
   PELLUCID_DEPTH_VIEW_Z = 1,
   /* Distance from the light, scene units. Only shadow maps can have this encoding. */
-  PELLUCID_DEPTH_DISTANCE = 2
+  PELLUCID_DEPTH_DISTANCE = 2,
+  /* Thickness of the body under the surface, mm, along the normal, as artists paint it. Negative values, values >= 1e9 and NaN: not known.
+   * Only frame.backDepth can have this encoding. */
+  PELLUCID_DEPTH_THICKNESS = 3
 } PellucidDepthEncoding;
 
 /* A light's shadow map as the engine drew it. Biases, atlas tiles and exit depth are in `options`. */
@@ -170,8 +173,8 @@ typedef struct PellucidFrame {
   /* Required; a depth format or one float channel, in options.frontDepthEncoding: the surface that the camera sees. The surface's normal
    * follows from these depths. Shading normals are no input, because normal maps turn them away from the surface. */
   PellucidImage frontDepth;
-  /* Optional; as frontDepth, in options.backDepthEncoding: the nearest back face behind the front depth. Without it no light has the
-   * camera-space thickness, and thin parts return as much light as thick parts. */
+  /* Optional; as frontDepth, in options.backDepthEncoding: the nearest back face behind the front depth, or the body's thickness. Without
+   * it no light has the camera-space thickness, and thin parts return as much light as thick parts. */
   PellucidImage backDepth;
   /* Optional; three float channels, in the units of `irradiance`: the irradiance of the hidden face from all around, as light probes
    * have it. The part T(d) comes through. The image replaces options.ambient for hidden faces, and needs backDepth. docs/integration.md,

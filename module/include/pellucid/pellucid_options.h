@@ -144,7 +144,9 @@ typedef struct PellucidFrameOptions {
   /* ---- inputs and output ---- */
 
   /* PELLUCID_DEPTH_DEVICE (default) or VIEW_Z. */
-  uint32_t frontDepthEncoding, backDepthEncoding;
+  uint32_t frontDepthEncoding;
+  /* PELLUCID_DEPTH_DEVICE (default), VIEW_Z or THICKNESS. */
+  uint32_t backDepthEncoding;
   /* The material index is (value & materialMask) >> materialShift. Other bits of the value are ignored. Shift: 0..31; default 0. Mask 0
    * (default): all bits. Any other mask must contain the bits of every index. */
   uint32_t materialShift, materialMask;
@@ -174,7 +176,8 @@ typedef struct PellucidFrameOptions {
    * distance. */
   float nearestDistance;
   /* 1: light of all lights enters the face that a pixel hides, frame.backDepth gives the thickness, and shadow maps only occlude. 0
-   * (default): lights with a map of front faces have the light-space thickness. Others are always as with 1. */
+   * (default): lights with a map of front faces have the light-space thickness. Lights without such a map are always as with 1. Shadow
+   * maps and backDepthEncoding THICKNESS refuse 1, as a thickness does not tell where the hidden face lies. */
   uint32_t cameraThickness;
 
   /* ---- other light ---- */
