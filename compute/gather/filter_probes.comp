@@ -11,9 +11,13 @@ layout(set = 0, binding = PELLUCID_BINDING_FOUND_PROBES) uniform utexture2D foun
 layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) uniform uimage2D sharedImage;
 layout(set = 0, binding = PELLUCID_BINDING_MOTION) uniform texture2D motionImage;
 
-const int kReach = 3; // cells, across and along together
-const int kSquare = 2 * kReach + 1, kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
-const int kBorder = kRow * kRow - PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP;
+const int kReach = PELLUCID_SHARE_REACH;
+const float kReturnedReach = 4.0; // of what bodies return, which has no noise; squared cells
+// Squared cells at which a probe counts half. At the reach it counts a ninth: a mean whose ends count fully is grainy, because from cell
+// to cell other probes are in it.
+const float kHalfAway = 8.0;
+const int kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
+const int kInside = PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP, kBorder = kRow * kRow - kInside;
 
 shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
 shared uvec4 found[kRow * kRow];  // as probes have light; the normal in halves, in place of the probes' own
@@ -48,7 +52,7 @@ bool accumulates() { return kAccumulates && frame.motion.z > 0.0; }
 const float kOwnFrame = 0.1;      // part of the frame's own light: a mean over ten frames, whose noise falls to sqrt(.1 / 1.9)
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame: 1.2 m/s at 1 m and 60 frames a second
 const float kSameFacing = 0.7;    // cosine between normals of both frames: beyond 45 degrees probes count less than half
-const float kMostErrors = 3.0;    // standard errors of the mean over 25 probes: light that stays is within them in 99.7 % of frames
+const float kMostErrors = 3.0;    // standard errors of the mean over all that share: light that stays is within them in 99.7 % of frames
 
 // `light`, the mean of the probes around, averaged with the light that the earlier frame had at the probe's place, as far as that is
 // within the mean's error: light that changed does not linger.
@@ -86,24 +90,32 @@ vec3 accumulated(uvec4 own, ivec2 cell, int side, vec3 light, vec3 standardError
 uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
   int center = placeOf(local);
   vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
-  float total = 0.0, squaredWeights = 0.0;
+  float total = 0.0, squaredWeights = 0.0, totalReturned = 0.0;
   vec3 added = vec3(0.0), squares = vec3(0.0), returned = vec3(0.0);
-  [[unroll]] for (int i = 0; i < kSquare * kSquare; ++i) {
-    ivec2 away = ivec2(i % kSquare, i / kSquare) - kReach;
-    if (abs(away.x) + abs(away.y) > kReach) continue; // known when compiled
-    vec4 theirs = places[center + away.y * kRow + away.x];
-    uvec4 bits = found[center + away.y * kRow + away.x];
-    vec3 apart = theirs.xyz - place;
-    vec2 middle = unpackHalf2x16(bits.y);
-    float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
-    // The square keeps what surfaces turn over from being evened out: at 45 degrees a probe counts half.
-    float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? exp2(-dot(apart, apart) * perSquare) * facing * facing : 0.0;
-    vec3 light = vec3(unpackHalf2x16(bits.x), middle.x);
-    added += weight * light;
-    if (accumulates()) squares += weight * light * light;
-    if (someReturned != 0u) returned += weight * returnedOf(bits);
-    total += weight;
-    squaredWeights += weight * weight;
+  // Unrolled, these loops would not fit caches of instructions. Floats count cells, because conversions from integers are slow.
+  [[dont_unroll]] for (float y = -float(kReach); y <= float(kReach); y += 1.0) {
+    float x = abs(y) - float(kReach);
+    int at = center + int(y) * kRow + int(x), last = at - 2 * int(x);
+    [[dont_unroll]] for (; at <= last; ++at, x += 1.0) {
+      float squared = x * x + y * y;
+      vec4 theirs = places[at];
+      uvec4 bits = found[at];
+      vec3 apart = theirs.xyz - place;
+      vec2 middle = unpackHalf2x16(bits.y);
+      float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
+      // The square keeps what surfaces turn over from being evened out: at 45 degrees a probe counts half.
+      float falls = exp2(-squared / kHalfAway - dot(apart, apart) * perSquare) * facing * facing;
+      float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? falls : 0.0;
+      vec3 light = vec3(unpackHalf2x16(bits.x), middle.x);
+      added += weight * light;
+      if (accumulates()) squares += weight * light * light;
+      if (squared <= kReturnedReach && someReturned != 0u) {
+        returned += weight * returnedOf(bits);
+        totalReturned += weight;
+      }
+      total += weight;
+      squaredWeights += weight * weight;
+    }
   }
   // The probe itself is among them.
   added /= total;
@@ -111,26 +123,30 @@ uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
     vec3 variance = max(squares / total - added * added, vec3(0.0)) * (squaredWeights / (total * total));
     added = accumulated(own, cell, side, added, sqrt(variance));
   }
-  return withReturned(withAdded(own, added), returned / total);
+  own = withAdded(own, added);
+  return someReturned != 0u ? withReturned(own, returned / totalReturned) : own;
 }
 
 // Filters the cells from `first` on, for all invocations, as they wait for each other.
 void filterCells(ivec2 first, int side) {
   int index = int(gl_LocalInvocationIndex);
-  ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local, border = borderCell(index);
-  bool hasBorder = index < kBorder;
-  uvec4 own = probeOf(foundImage, cell, side, 0), beside = hasBorder ? probeOf(foundImage, first + border, side, 0) : kNoProbe;
+  ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local;
+  uvec4 own = probeOf(foundImage, cell, side, 0);
+  bool light = hasLight(own), returned = hasReturned(own);
+  keepProbe(local, cell, side, own);
+  for (int i = index; i < kBorder; i += kInside) {
+    ivec2 border = borderCell(i);
+    uvec4 beside = probeOf(foundImage, first + border, side, 0);
+    light = light || hasLight(beside);
+    returned = returned || hasReturned(beside);
+    keepProbe(border, first + border, side, beside);
+  }
   if (index == 0) someLight = someReturned = 0u;
   barrier();
-  if (hasLight(own) || hasLight(beside)) someLight = 1u; // whoever writes, writes this
-  if (hasReturned(own) || hasReturned(beside)) someReturned = 1u;
+  if (light) someLight = 1u; // whoever writes, writes this
+  if (returned) someReturned = 1u;
   barrier();
   bool shares = someLight != 0u;
-  if (shares) {
-    keepProbe(local, cell, side, own);
-    if (hasBorder) keepProbe(border, first + border, side, beside);
-  }
-  barrier();
   // A material of another frame's list has no constants.
   uint material = own.z & 0xFFu;
   if (shares && material != 0u && material <= frame.flags.y) {

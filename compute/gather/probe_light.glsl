@@ -262,10 +262,11 @@ const float kSteepestPlane = 2.0;
 // A sample's place from x, mm.
 vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center + offset.x * across + offset.y * along; }
 
-// Multiplier of the lattice of patterns. Measured: procedural shells, rings of marble, balls of skin.
-const int kLattice = 11;
+// Multipliers of the lattice of patterns, in cells and in turns: of all pairs those whose patterns fill the strata best in diamonds of
+// lesser reach, half diamonds and rows, by the sum of squares of the Fourier series up to order 4.
+const int kCellStep = 4, kTurnStep = 5;
 
-// A cell takes one of 25 patterns. Probes that are too far apart to share all take the middle one.
+// A cell takes one of the patterns. Probes that are too far apart to share all take the middle one.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
@@ -273,10 +274,12 @@ struct Pattern {
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
   float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
-  // A cell and the 24 that it shares with have one pattern each: 7 a row, as diamonds of 25 cells then tile the plane. A lattice fills
-  // the strata, and the turn between a sample and its like. Turns begin half a step off the axes, along which edges often lie.
-  int turn = (cell.x + 7 * cell.y + frame.lattice.z) % 25, within = turn * kLattice % 25;
-  return Pattern(0.5 + vary * (float(within) - 12.0) / 25.0, vary * (float(turn) + 0.5) / 25.0);
+  // A cell and those that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and its like.
+  // Turns begin half a step off the axes, along which edges often lie.
+  int turn = kCellStep * (cell.x + PELLUCID_PATTERNS_A_ROW * cell.y + frame.lattice.z) % PELLUCID_PATTERNS;
+  int within = kTurnStep * turn % PELLUCID_PATTERNS;
+  const float kPerPattern = 1.0 / float(PELLUCID_PATTERNS);
+  return Pattern(0.5 + vary * (kPerPattern * (float(within) + 0.5) - 0.5), vary * kPerPattern * (float(turn) + 0.5));
 }
 
 // Sums over samples, of a light of radiance 1; docs/how-it-works.md derives them. hidden, seen: from the camera.

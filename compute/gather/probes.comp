@@ -1,5 +1,5 @@
 // Probes: in each cell of 1, 2 or 4 pixels a side one gathers, from entry points, what each light brings beyond its diffused
-// irradiance. Neighbors take samples of their own, by 25 patterns; filter_probes.comp shares what they find.
+// irradiance. Neighbors take samples of their own, by PELLUCID_PATTERNS patterns; filter_probes.comp shares what they find.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

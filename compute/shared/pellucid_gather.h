@@ -6,6 +6,12 @@
 namespace pellucid::shared {
 #endif
 
+// A probe shares with cells up to this far away, across and along together. These diamonds tile the plane, and each cell of one has a
+// pattern of its own.
+#define PELLUCID_SHARE_REACH 5
+#define PELLUCID_PATTERNS 61       // cells of a diamond, 2 reach (reach + 1) + 1
+#define PELLUCID_PATTERNS_A_ROW 11 // 2 reach + 1
+
 // Constants of the light-space gather; see gather/probe_light.glsl. rgb: per channel.
 struct GatherConstants {
   vec4 lengths; // mm; x: shortest; y: log2(longest / shortest); z: largest distance looked for, 2 / kappa; w: depth scale

@@ -108,8 +108,9 @@ std::array<glm::mat4, 3> ambientIrradiance(const Setup& setup) {
 
 // As of probe_light.glsl.
 int patternOfCell(glm::ivec2 cell) {
-  const int pattern = (cell.x % 25 + 7 * (cell.y % 25)) % 25;
-  return pattern < 0 ? pattern + 25 : pattern;
+  constexpr int kCount = PELLUCID_PATTERNS;
+  const int pattern = (cell.x % kCount + PELLUCID_PATTERNS_A_ROW * (cell.y % kCount)) % kCount;
+  return pattern < 0 ? pattern + kCount : pattern;
 }
 
 shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& state) {
@@ -134,11 +135,11 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   c.rect = {r.x, r.y, r.x + r.width, r.y + r.height};
   c.lattice = {facts.lattice.first, patternOfCell(facts.lattice.period / static_cast<int>(facts.gatherSpacing)), 0};
   if (facts.stages.accumulates) {
-    // Frames by turns have the upper and the lower half, and each cell takes all patterns in 25 frames.
+    // Frames by turns have the upper and the lower half, and each cell takes all patterns in as many frames.
     const int half = static_cast<int>(parts(facts.lattice.extent.y, facts.gatherSpacing));
-    const int age = static_cast<int>(state.history.age % 50), odd = age % 2;
-    constexpr int kPatternStep = 9;
-    c.lattice.z = (c.lattice.z + kPatternStep * age) % 25;
+    const int age = static_cast<int>(state.history.age % (2 * PELLUCID_PATTERNS)), odd = age % 2;
+    constexpr int kPatternStep = 23;  // next to .38 of them, the golden section, and prime to their number
+    c.lattice.z = (c.lattice.z + kPatternStep * age) % PELLUCID_PATTERNS;
     c.lattice.w = odd * half;
     c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, half};
     c.motion = {f.options.motionScale[0] * static_cast<float>(f.imageExtent[0]),

@@ -261,9 +261,9 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
 float gatherReach(const shared::GatherConstants& gather, uint32_t samples) {
   const glm::vec4& lengths = gather.lengths;
   // Entry points lie t + s away, t <= lengths.z along the axis and s the spread of the last sample, which is
-  // within the last 1 / samples by at most 25/26 of it (patternOf and gatherSpread of
+  // within the last 1 / samples, half a pattern's share before its end at most (patternOf and gatherSpread of
   // compute/gather/probe_light.glsl).
-  const float rest = 1.0f / (26 * static_cast<float>(samples)), u = 1 - rest;
+  const float rest = 0.5f / (PELLUCID_PATTERNS * static_cast<float>(samples)), u = 1 - rest;
   return lengths.z - std::log(rest) * lengths.x * std::exp2(lengths.y * u);
 }
 
