@@ -264,14 +264,16 @@ vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center +
 // Multiplier of the lattice of patterns. Measured: procedural shells, rings of marble, balls of skin.
 const int kLattice = 11;
 
-// A cell takes one of 25 patterns. Probes that are too far apart to share all take the middle one.
+// A cell takes one of 25 patterns. Probes that are too far apart to share all take the middle one, unless they are averaged with an
+// earlier frame's: then other samples in each frame even out.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
-  float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
+  bool averages = frame.motion.z > 0.0;
+  float vary = averages ? 1.0 : clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   // A cell and the 24 that it shares with have one pattern each: 7 a row, as diamonds of 25 cells then tile the plane. A lattice fills
   // the strata, and the turn between a sample and its like. Turns begin half a step off the axes, along which edges often lie.
   int turn = (cell.x + 7 * cell.y + frame.lattice.z) % 25, within = turn * kLattice % 25;

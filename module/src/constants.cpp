@@ -140,7 +140,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
     constexpr int kPatternStep = 9;
     c.lattice.z = (c.lattice.z + kPatternStep * age) % 25;
     c.lattice.w = odd * half;
-    c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, half};
+    c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, 0};
     c.motion = {f.options.motionScale[0] * static_cast<float>(f.imageExtent[0]),
                 f.options.motionScale[1] * static_cast<float>(f.imageExtent[1]),
                 state.kept.valid != 0 ? f.preExposure / state.kept.preExposure : 0, 0};
