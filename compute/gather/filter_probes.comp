@@ -49,7 +49,7 @@ const float kOwnFrame = 0.1;      // part of the frame's own light: a mean over 
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame: 1.2 m/s at 1 m and 60 frames a second
 const float kSameFacing = 0.7;    // cosine between normals of both frames: beyond 45 degrees probes count less than half
 const float kMostErrors = 3.0;    // standard errors of the mean over 25 probes: light that stays is within them in 99.7 % of frames
-// Where few probes share, their differences do not tell the error: it then is this part of the light, which eight samples are off by.
+// Where few probes share, their differences do not tell the error: it then is this part of the light, about what eight samples are off by.
 const float kLoneError = 0.1;
 const float kFewShare = 0.1;
 

@@ -611,7 +611,7 @@ std::span<const Check> checks() {
        "frames with lights, not gathered", 2e-3, 2e-3, kRounding, &darkerFilter},
       {"farther-backs", "a back depth farther away gives no pixel more",
        "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
-      {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3,
+      {"reuse", "the next frame of a still camera is the frame", "frames that reuse the light of pixels", 2e-3, 2e-3,
        kRounding, &reuse},
   };
   return table;

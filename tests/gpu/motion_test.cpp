@@ -204,27 +204,25 @@ TEST_F(Motion, BytesOfAFreshHistoryAreNotRead) {
   for (const std::uint64_t garbage : {1u, 2u, 3u}) EXPECT_TRUE(sameBits(lastOf(garbage), zeros)) << garbage;
 }
 
-// Pixels of 2 mm lie too far apart to share their light.
-TEST_F(Motion, LonelyCellsAverageOverFramesToo) {
-  SceneParameters p{.name = "sphere", .options = {{"radius", 40}, {"extent", 96}, {"lightAngle", 110}}};
-  p.width = p.height = 48;
+// Cells of 1.3 mm of skin are too far apart to have patterns of their own in a single frame.
+TEST_F(Motion, CellsThatHardlyShareAverageOverFramesToo) {
+  SceneParameters p{.name = "sphere", .options = {{"radius", 16}, {"extent", 48}, {"lightAngle", 110}}};
+  p.width = p.height = 72;
   p.shadowSize = 160;
   const Capture c = makeScene(p);
-  ReplaySettings kept = accumulated();
-  kept.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  ReplaySettings many = gathering(64), few = gathering(8);
-  many.features = few.features = kept.features;
+  ReplaySettings kept = accumulated(2), many = gathering(64, 2), few = gathering(8, 2);
+  kept.features = many.features = few.features = PELLUCID_FEATURE_TRANSLUCENCY;
   const Image expected = rgbOf(c, many);
   const double alone = rmse(c, rgbOf(c, few), expected);
   Sequence sequence;
   Image before, last = next(sequence, c, kept);
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 14; ++i) {
     before = std::move(last);
     last = next(sequence, c, kept);
-    if (i < 2) EXPECT_FALSE(sameBits(before, last)) << "frame " << i << " takes the samples of the one before";
+    EXPECT_FALSE(sameBits(before, last)) << "frame " << i << " takes the samples of the one before";
   }
-  EXPECT_LT(rmse(c, last, expected), 0.8 * alone);
-  EXPECT_LT(rmse(c, last, before), 0.2 * alone) << "it flickers";
+  EXPECT_LT(rmse(c, last, expected), 0.95 * alone);
+  EXPECT_LT(rmse(c, last, before), 0.3 * alone) << "it flickers";
 }
 
 // Kept light has the exposure of its frame.
