@@ -315,6 +315,9 @@ std::optional<Worst> history(Subject& s) {
   second.settings.debugView = PELLUCID_DEBUG_NONE;
   second.settings.reuse = PELLUCID_REUSE_ACCUMULATE;
   second.settings.renderRect = randomRect(random, width, height);
+  // Most other options keep a frame from gathering.
+  second.settings.translucency = {};
+  second.settings.translucency.gatherSpacing = s.frame.settings.translucency.gatherSpacing;
   Image& motion = second.capture.motion;
   motion = Image(width, height, 4);
   const double speed = random.chance(0.3) ? 0 : random.magnitude(1e-3, 0.5);
