@@ -317,6 +317,7 @@ std::optional<Worst> history(Subject& s) {
   second.settings.renderRect = randomRect(random, width, height);
   // Most other options keep a frame from gathering.
   second.settings.translucency = {};
+  second.settings.translucency.gatherSamples = kDefaultGatherSamples;
   second.settings.translucency.gatherSpacing = s.frame.settings.translucency.gatherSpacing;
   Image& motion = second.capture.motion;
   motion = Image(width, height, 4);
