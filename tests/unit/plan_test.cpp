@@ -7,6 +7,7 @@
 #include <map>
 
 #include "context.h"
+#include "entry_points.h"
 #include "frame_fixture.h"
 #include "shared/pellucid_shared.h"
 
@@ -177,6 +178,21 @@ TEST(Plan, NoRectChangesTheImages) {
         EXPECT_EQ(part[i].persistent, whole[i].persistent) << i;
       }
     }
+}
+
+// Clip coordinates are homogeneous.
+TEST(Plan, TexelsHaveTheirSideWhateverTheFactorOfTheMatrix) {
+  Frame f;
+  f.maps[0].clipFromWorld[0] = 0.2f;
+  const PellucidShadowMap orthographic = f.maps[0];
+  PellucidShadowMap perspective = orthographic;
+  perspective.clipFromWorld[11] = -1, perspective.clipFromWorld[15] = 0;
+  for (PellucidShadowMap map : {orthographic, perspective}) {
+    const double side = pellucid::texelSide(map);
+    EXPECT_GT(side, 0);
+    for (float& v : map.clipFromWorld) v *= 8;
+    EXPECT_EQ(pellucid::texelSide(map), side);
+  }
 }
 
 TEST(Plan, GathersBesideTheDiffusion) {
