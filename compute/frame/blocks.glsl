@@ -76,10 +76,10 @@ const uint kWholeBlock = 0x80000000u;
 bool isWhole(uint word) { return (word & kWholeBlock) != 0u; }
 uint blockOf(uint word) { return word & ~kWholeBlock; }
 
-// The first pixel of the group's part of its block with material: y of the work group counts the parts, of `pixels` each. False, alike
-// in all invocations, where no cell of the part holds material.
-bool materialPart(ivec2 pixels, out ivec2 first) {
-  uint word = listedBlock(materialList()), block = blockOf(word);
+// The first pixel of the group's part of a block: y of the work group counts the parts, of `pixels` each. `word`: a block's number, or
+// a listed word. False, alike in all invocations, where no cell of the part holds material.
+bool materialPart(uint word, ivec2 pixels, out ivec2 first) {
+  uint block = blockOf(word);
   int columns = PELLUCID_BLOCK / pixels.x, index = int(gl_WorkGroupID.y);
   ivec2 part = pixels * ivec2(index % columns, index / columns), cell = part >> kCellShift, end = cell + (pixels >> kCellShift);
   first = firstPixel(block) + part;
@@ -89,5 +89,8 @@ bool materialPart(ivec2 pixels, out ivec2 first) {
     some |= readWord(blockWord(block, cellWord(ivec2(0, row)))) & inRows & 255u << 8 * (row & 3);
   return some != 0u;
 }
+
+// The same of the group's block with material.
+bool materialPart(ivec2 pixels, out ivec2 first) { return materialPart(listedBlock(materialList()), pixels, first); }
 
 #endif

@@ -122,10 +122,11 @@ vec3 albedoAt(ivec2 at) { return sanitize(texelFetch(albedoImage, at, 0).rgb); }
 // True where the result is added to what the output holds.
 bool adds(bool last) { return last && hasFlag(PELLUCID_FLAG_ADDS); }
 
-// `color` with alpha, on top of what the output holds.
+// `color` with alpha, on top of what the output holds, of which NaN counts as 0. The sum alone is clamped.
 vec4 onHeld(ivec2 at, vec3 color) {
   vec4 held = texelFetch(heldImage, at, 0);
-  return vec4(limited(limited(held.rgb) + color), held.a);
+  bvec3 isNumber = lessThanEqual(floatBitsToUint(held.rgb) & 0x7FFFFFFFu, uvec3(kInfinity));
+  return vec4(limited(mix(vec3(0.0), held.rgb, isNumber) + color), held.a);
 }
 
 void writeResult(ivec2 at, vec3 color, float alpha, bool last) {

@@ -53,6 +53,9 @@ const float kOwnFrame = 0.1;      // part of the frame's own light: a mean over 
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame: 1.2 m/s at 1 m and 60 frames a second
 const float kSameFacing = 0.7;    // cosine between normals of both frames: beyond 45 degrees probes count less than half
 const float kMostErrors = 3.0;    // standard errors of the mean over all that share: light that stays is within them in 99.7 % of frames
+// Where few probes share, their differences do not tell the error: it then is this part of the light, about what eight samples are off by.
+const float kLoneError = 0.1;
+const float kFewShare = 0.1;
 
 // `light`, the mean of the probes around, averaged with the light that the earlier frame had at the probe's place, as far as that is
 // within the mean's error: light that changed does not linger.
@@ -63,19 +66,21 @@ vec3 accumulated(uvec4 own, ivec2 cell, int side, vec3 light, vec3 standardError
   const float kFar = 65536.0; // also no place at all
   if (!isWithin(moved.x + kFar, 0.0, 2.0 * kFar) || !isWithin(moved.y + kFar, 0.0, 2.0 * kFar)) return light;
   vec2 at = (vec2(pixel + frame.kept.xy) - moved) / float(side);
-  ivec2 base = ivec2(floor(at)), cells = ivec2(imageSize(sharedImage).x, frame.kept.w);
+  ivec2 base = ivec2(floor(at)), moves = frame.kept.xy - frame.lattice.xy;
+  // The earlier frame had the same rect of the image, and wrote all cells of it.
+  ivec4 cells = cellsOf(uvec4(ivec4(frame.rect) + moves.xyxy), side);
   vec2 part = at - vec2(base);
   vec3 kept = vec3(0.0);
   float total = 0.0;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), from = base + corner;
-    if (!contains(ivec4(0, 0, cells), from)) continue;
+    if (!contains(cells, from)) continue;
     uvec4 bits = imageLoad(sharedImage, from + ivec2(0, frame.kept.z));
     ProbePlace q = unpackPlace(bits);
     vec2 linear = mix(1.0 - part, part, vec2(corner));
     bool same = q.material == p.material && abs(q.front - p.front) < kSameFront * abs(p.front) && dot(q.normal, p.normal) > kSameFacing;
     float weight = same ? linear.x * linear.y : 0.0;
-    kept += weight * addedOf(bits);
+    kept += mix(vec3(0.0), weight * addedOf(bits), bvec3(same)); // 0 times NaN is NaN
     total += weight;
   }
   if (total < 0.01) return light;
@@ -120,8 +125,9 @@ uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
   // The probe itself is among them.
   added /= total;
   if (accumulates()) {
-    vec3 variance = max(squares / total - added * added, vec3(0.0)) * (squaredWeights / (total * total));
-    added = accumulated(own, cell, side, added, sqrt(variance));
+    float alone = squaredWeights / (total * total); // 1: no other probe shares; about 1/40: all around do
+    vec3 variance = max(squares / total - added * added, vec3(0.0)) * alone;
+    added = accumulated(own, cell, side, added, sqrt(variance) + kLoneError * max(alone - kFewShare, 0.0) * abs(added));
   }
   own = withAdded(own, added);
   return someReturned != 0u ? withReturned(own, returned / totalReturned) : own;
@@ -156,8 +162,19 @@ void filterCells(ivec2 first, int side) {
   if (contains(cellsOf(frame.rect, side), cell)) imageStore(sharedImage, cell + ivec2(0, frame.lattice.w), own);
 }
 
+// The next frame may read any cell of the rect.
+void clearCells(ivec2 first, int side) {
+  ivec2 cell = first + ivec2(gl_LocalInvocationID.xy);
+  if (contains(cellsOf(frame.rect, side), cell)) imageStore(sharedImage, cell + ivec2(0, frame.lattice.w), kNoProbe);
+}
+
 void main() {
   int side = int(pass.value.x);
   ivec2 first;
-  if (materialPart(ivec2(side * PELLUCID_FILTER_GROUP), first)) filterCells(first / side, side);
+  // Frames that accumulate go over all blocks, as lists lack those without material.
+  uint word = kAccumulates ? gl_WorkGroupID.x : listedBlock(materialList());
+  if (materialPart(word, ivec2(side * PELLUCID_FILTER_GROUP), first))
+    filterCells(first / side, side);
+  else if (kAccumulates)
+    clearCells(first / side, side);
 }

@@ -266,14 +266,16 @@ vec3 onRing(vec3 center, vec3 across, vec3 along, vec2 offset) { return center +
 // lesser reach, half diamonds and rows, by the sum of squares of the Fourier series up to order 4.
 const int kCellStep = 4, kTurnStep = 5;
 
-// A cell takes one of the patterns. Probes that are too far apart to share all take the middle one.
+// A cell takes one of the patterns. Probes that are too far apart to share all take the middle one, unless they are averaged with an
+// earlier frame's: then other samples in each frame even out.
 struct Pattern {
   float within, turn; // [0, 1): place in a ring, turn of the first sample
 };
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
   vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
-  float vary = clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
+  bool averages = frame.motion.z > 0.0;
+  float vary = averages ? 1.0 : clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   // A cell and those that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and its like.
   // Turns begin half a step off the axes, along which edges often lie.
   int turn = kCellStep * (cell.x + PELLUCID_PATTERNS_A_ROW * cell.y + frame.lattice.z) % PELLUCID_PATTERNS;

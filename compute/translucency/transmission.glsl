@@ -239,7 +239,8 @@ float meanThickness(vec4 weight, vec4 thickness, uint m) {
   float least = min(min(counted.x, counted.y), min(counted.z, counted.w));
   // 0 < sum <= total: the least thickness has a weight above 0. rate > 0: no material's T takes more than 1000 mm to halve.
   float sum = dot(weight, exp2(rate * min(least - thickness, 0.0)));
-  return least - log2(sum / total) / rate;
+  // sum / total and log2 are rounded, but no mean is below the least.
+  return max(least - log2(sum / total) / rate, least);
 }
 
 // ---- Light through solids

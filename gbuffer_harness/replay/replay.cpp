@@ -59,7 +59,8 @@ public:
         if (!history_) {
           history_ = std::make_shared<GpuImage>(device, static_cast<int>(needs[i].extent[0]),
                                                 static_cast<int>(needs[i].extent[1]), needs[i].format);
-          history_->clear();
+          history_->clear(0xFF);  // as transients: what a fresh one holds must not matter
+          fresh_ = history_.get();
         }
         f.options.history = history_->use();
         continue;
@@ -85,12 +86,14 @@ public:
   void fillGarbage(std::uint64_t seed) const {
     if (!outputIsIrradiance_) output_->clear(0xFF);
     constexpr std::uint8_t kBytes[] = {0x00, 0xFF, 0x7B};  // 0, NaN, large finite numbers in both formats
-    for (GpuImage* image : transients_) {
+    const auto fill = [&](GpuImage& image) {
       if (seed % 4 < std::size(kBytes))
-        image->clear(kBytes[seed % 4]);
+        image.clear(kBytes[seed % 4]);
       else
-        image->fill(seed);
-    }
+        image.fill(seed);
+    };
+    for (GpuImage* image : transients_) fill(*image);
+    if (fresh_) fill(*fresh_);
   }
   void uploadOutput(const Image& content) const { output_->upload(content); }
   const GpuImage& output() const { return *output_; }
@@ -137,6 +140,7 @@ private:
   GpuImage* output_ = nullptr;
   bool outputIsIrradiance_ = false;
   std::shared_ptr<GpuImage> history_;  // of all frames of a sequence
+  GpuImage* fresh_ = nullptr;          // the history, if this frame is the sequence's first
 };
 
 PellucidContextDesc contextDesc(const Device& device) {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "capture/shadow_images.h"
+#include "common/error.h"
 #include "stress/random_parts.h"
 
 namespace pellucid::harness::stress {
@@ -27,6 +29,29 @@ Image Renderer::render(const StressFrame& frame, const FrameRun& run, std::uint6
   ++recordings_;
   pixels_ += frame.capture.irradiance.pixels();
   return run.output();
+}
+
+std::optional<Image> Renderer::renderWith(const StressFrame& frame, std::uint32_t uses, std::string& said) {
+  const bool arrays = hasLayers(frame.capture.lights);
+  std::unique_ptr<Context>& context = contextsByUses_[{uses, arrays}];
+  if (!context)
+    context = std::make_unique<Context>(device_, [&](PellucidContextDesc& desc) {
+      desc.options.uses = uses;
+      if (arrays) desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    });
+  const FrameRun run(device_, *context, frame.capture, frame.materials, frame.settings);
+  const std::size_t before = context->message().size();
+  bool refused = false;
+  device_.run([&](VkCommandBuffer commandBuffer) {
+    try {
+      run.record(commandBuffer);
+    } catch (const InputError&) {
+      refused = true;
+    }
+  });
+  if (!refused) return render(frame, run, frame.index);
+  said = context->message().substr(before);
+  return {};
 }
 
 namespace {
@@ -270,6 +295,131 @@ std::optional<Worst> reach(Subject& s) {
                        beyond);
 }
 
+Worst larger(const Worst& a, const Worst& b) { return a.value < b.value ? b : a; }
+
+// A rect with a corner anywhere, smaller than the image.
+std::array<std::uint32_t, 4> randomRect(Random& random, int width, int height) {
+  const bool across = width > 1 && (height == 1 || random.chance(0.5));
+  const int x = random.whole(across ? 1 : 0, width - 1), y = random.whole(across ? 0 : height > 1, height - 1);
+  return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(width - x),
+          static_cast<std::uint32_t>(height - y)};
+}
+
+// The second of two accumulated frames reads what the first one left, and no other bytes: those of a fresh history, or of a sequence
+// with another rect or without the anchor.
+std::optional<Worst> history(Subject& s) {
+  const int width = s.frame.capture.width, height = s.frame.capture.height;
+  if (!s.translucent() || width * height == 1) return {};
+  Random random = s.random("history");
+  StressFrame second = s.frame;
+  second.settings.debugView = PELLUCID_DEBUG_NONE;
+  second.settings.reuse = PELLUCID_REUSE_ACCUMULATE;
+  second.settings.renderRect = randomRect(random, width, height);
+  // Most other options keep a frame from gathering.
+  second.settings.translucency = {};
+  second.settings.translucency.gatherSamples = kDefaultGatherSamples;
+  second.settings.translucency.gatherSpacing = s.frame.settings.translucency.gatherSpacing;
+  Image& motion = second.capture.motion;
+  motion = Image(width, height, 4);
+  const double speed = random.chance(0.3) ? 0 : random.magnitude(1e-3, 0.5);
+  for (float& v : motion.data) v = random.chance(0.02) ? badFloat(random) : static_cast<float>(random.real(-speed, speed));
+  // Parts lose their material, and others have it for the first time.
+  StressFrame first = second, other = second;
+  const int side = random.whole(1, 64);
+  const double share = random.real(0, 0.7);
+  const std::uint64_t seed = random.bits();
+  for (std::size_t i = 0; i < first.capture.material.size(); ++i) {
+    const auto column = static_cast<std::uint64_t>(static_cast<int>(i) % width / side),
+               row = static_cast<std::uint64_t>(static_cast<int>(i) / width / side);
+    if (Random(seed, row << 32 | column).chance(share)) first.capture.material[i] = 0;
+  }
+  other.settings.renderRect = {0, 0, 0, 0};
+  const std::unique_ptr<FrameRun> fresh = s.renderer.prepare(first);
+  if (fresh->plan().skipCount > 0 && std::any_of(fresh->plan().skips, fresh->plan().skips + fresh->plan().skipCount,
+                                                 [](const PellucidSkip& skip) { return std::strcmp(skip.what, "accumulation") == 0; }))
+    return {};
+  const Image freshFirst = s.renderer.render(first, *fresh, second.index);
+  const Image freshSecond = s.renderer.render(second, *s.renderer.prepare(second, fresh.get()), second.index);
+  const std::unique_ptr<FrameRun> before = s.renderer.prepare(other);
+  s.renderer.render(other, *before, second.index + 1);
+  const std::unique_ptr<FrameRun> cut = s.renderer.prepare(first, before.get());
+  const Image cutFirst = s.renderer.render(first, *cut, second.index + 1);
+  const Image cutSecond = s.renderer.render(second, *s.renderer.prepare(second, cut.get()), second.index + 1);
+  return larger(differentBits(cutFirst, freshFirst, ownedPixels(first)), differentBits(cutSecond, freshSecond, ownedPixels(second)));
+}
+
+std::vector<PellucidImageNeed> needsOf(PellucidFrame frame, const std::array<std::uint32_t, 4>& rect) {
+  std::copy(rect.begin(), rect.end(), frame.options.renderRect);
+  std::uint32_t count = kMaxImageNeeds;
+  std::vector<PellucidImageNeed> needs(count);
+  if (pellucidGetImageNeeds(&frame, &count, needs.data()) != PELLUCID_OK) count = 0;
+  needs.resize(count);
+  return needs;
+}
+
+// Two parts of the image take the images of the whole, and show the same light where no neighbor is beyond their edge.
+std::optional<Worst> rects(Subject& s) {
+  constexpr std::array<std::uint32_t, 4> kWhole = {0, 0, 0, 0};
+  const auto width = static_cast<std::uint32_t>(s.frame.capture.width), height = static_cast<std::uint32_t>(s.frame.capture.height);
+  if (width == 1 || s.frame.settings.debugView != PELLUCID_DEBUG_NONE) return {};
+  Random random = s.random("rects");
+  const auto edge = static_cast<std::uint32_t>(random.whole(1, static_cast<int>(width) - 1));
+  const std::array<std::uint32_t, 4> parts[] = {{0, 0, edge, height}, {edge, 0, width - edge, height}};
+  const std::vector<PellucidImageNeed> all = needsOf(s.run->frame(), kWhole);
+  for (const auto& part : parts) {
+    const std::vector<PellucidImageNeed> own = needsOf(s.run->frame(), part);
+    if (own.size() != all.size() || !std::equal(own.begin(), own.end(), all.begin(), [](const auto& a, const auto& b) {
+          return a.format == b.format && std::equal(a.extent, a.extent + 2, b.extent) && a.persistent == b.persistent;
+        }))
+      return Worst{1, static_cast<int>(part[0]), 0, -1};
+  }
+  StressFrame frame = s.frame;
+  frame.settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  frame.settings.translucency.gatherSamples = 0;
+  frame.settings.reuse = PELLUCID_REUSE_NONE;
+  frame.settings.aliasOutput = false;
+  frame.settings.renderRect = kWhole;
+  if (!s.translucent()) return {};
+  const Image whole = s.renderer.render(frame);
+  Worst worst;
+  for (const auto& part : parts) {
+    frame.settings.renderRect = part;
+    Pixels pixels = ownedPixels(frame);
+    // A normal follows from two pixels to each side.
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      if (std::abs(2 * (static_cast<int>(i % width) - static_cast<int>(edge)) + 1) < 5) pixels[i] = 0;
+    worst = larger(worst, differentBits(s.renderer.render(frame), whole, pixels));
+  }
+  return worst;
+}
+
+// A context without a use refuses the frame by that use's name, or gives its bits. Few frames: shaders are compiled again.
+std::optional<Worst> uses(Subject& s) {
+  constexpr const char* kNames[] = {"TRANSLUCENCY", "GATHER", "DIFFUSION", "REUSE", "DEBUG_VIEWS", "THIN_WALLS", "AMBIENT", "THESIS"};
+  Random random = s.random("uses");
+  if (!random.chance(0.1) || aliased(s.frame)) return {};
+  const int left = random.whole(0, static_cast<int>(std::size(kNames)) - 1);
+  std::string said;
+  const std::optional<Image> image = s.renderer.renderWith(s.frame, 0xFFu & ~(1u << left), said);
+  if (image) return differentBits(*image, s.output, s.owned);
+  return Worst{said.find(std::string("uses with PELLUCID_USE_") + kNames[left]) == std::string::npos ? 1.0 : 0.0, -1, -1, -1};
+}
+
+// Clip coordinates are homogeneous. Powers of two round nothing.
+std::optional<Worst> mapFactor(Subject& s) {
+  StressFrame other = s.frame;
+  Random random = s.random("map-factor");
+  bool any = false;
+  for (Light& light : other.capture.lights)
+    for (ShadowMap& map : light.shadowMaps) {
+      any = true;
+      const double factor = std::exp2(random.whole(-6, 6));
+      for (double& v : map.clipFromWorld) v *= factor;
+    }
+  if (!any) return {};
+  return differentBits(s.renderer.render(other), s.output, s.owned);
+}
+
 std::optional<Worst> alpha(Subject& s) {
   return differentAlpha(aliased(s.frame) ? s.before : s.run->irradiance(), s.output, s.owned);
 }
@@ -397,8 +547,8 @@ std::optional<Worst> fartherBacks(Subject& s) {
 
 // The next frame of a camera that stands still shows what it kept.
 std::optional<Worst> reuse(Subject& s) {
-  if (s.frame.settings.reuse == PELLUCID_REUSE_NONE || s.frame.settings.debugView != PELLUCID_DEBUG_NONE)
-    return {};
+  const bool keepsPixels = s.frame.settings.reuse == PELLUCID_REUSE_ALTERNATE || s.frame.settings.reuse == PELLUCID_REUSE_COHERENCE;
+  if (!keepsPixels || s.frame.settings.debugView != PELLUCID_DEBUG_NONE) return {};
   // In place, a frame with nothing to do keeps irradiance that is no number.
   if (s.run->plan().dispatchCount == 0) return {};
   const std::unique_ptr<FrameRun> next = s.renderer.prepare(s.frame, s.run.get());
@@ -434,6 +584,13 @@ std::span<const Check> checks() {
        "frames with dispatches", 0, 0, kBits, &badValues},
       {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel",
        "frames larger than the kernel", 0, 0, kBits, &reach},
+      {"history", "the second of two accumulated frames reads what the first one left, and no other bytes of the history",
+       "frames that gather, with random motion and rect", 0, 0, kBits, &history},
+      {"rects", "two parts take the images that the whole image needs, and have its bits where they share no edge",
+       "frames without a debug view; bits: one thickness a pixel", 0, 0, kBits, &rects},
+      {"uses", "a context without one PellucidUse refuses the frame by the name of that use, or has its bits",
+       "one in ten whose output is not the irradiance", 0, 0, kBits, &uses},
+      {"map-factor", "clipFromWorld times powers of two changes no bit", "frames with shadow maps", 0, 0, kBits, &mapFactor},
       {"alpha", "alpha has the irradiance's bits, or is not finite as there", "all", 0, 0, kBits, &alpha},
       {"constant", "constant irradiance comes back from the diffusion",
        "frames that diffuse, without lights and albedo", 1e-3, 1e-3, kRounding, &constant},
@@ -458,7 +615,7 @@ std::span<const Check> checks() {
        "frames with lights, not gathered", 2e-3, 2e-3, kRounding, &darkerFilter},
       {"farther-backs", "a back depth farther away gives no pixel more",
        "frames with directional lights and depths in view z", 2e-3, 2e-3, kRounding, &fartherBacks},
-      {"reuse", "the next frame of a still camera is the frame", "frames that reuse light", 2e-3, 2e-3,
+      {"reuse", "the next frame of a still camera is the frame", "frames that reuse the light of pixels", 2e-3, 2e-3,
        kRounding, &reuse},
   };
   return table;

@@ -1,7 +1,9 @@
 // Promises that hold for every random frame. Most checks render a changed frame and compare the two.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,9 +34,13 @@ public:
   virtual Image render(const StressFrame& frame, const FrameRun& run, std::uint64_t garbage);
   Image render(const StressFrame& frame) { return render(frame, *prepare(frame), frame.index); }
 
+  // In a context of these PellucidUse bits. Empty if recording refuses the frame; then `said` is why.
+  std::optional<Image> renderWith(const StressFrame& frame, std::uint32_t uses, std::string& said);
+
 private:
   Device device_;
   Contexts contexts_;
+  std::map<std::array<std::uint32_t, 2>, std::unique_ptr<Context>> contextsByUses_;
   std::uint64_t recordings_ = 0, pixels_ = 0;
 };
 

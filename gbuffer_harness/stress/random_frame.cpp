@@ -83,7 +83,8 @@ void randomSettings(Random& random, const View& view, StressFrame& frame) {
   if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
   s.indirectDispatches = random.chance(0.6);
-  if (random.chance(0.1)) s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
+  if (random.chance(0.1))
+    s.reuse = random.of({PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE, PELLUCID_REUSE_ACCUMULATE});
   // Views of lights need all in one dispatch.
   if (random.chance(0.08))
     s.debugView = shadowImages(frame.capture.lights).images.size() > 8
@@ -97,7 +98,7 @@ void randomSettings(Random& random, const View& view, StressFrame& frame) {
                     static_cast<std::uint32_t>(random.whole(1, width - x)),
                     static_cast<std::uint32_t>(random.whole(1, height - y))};
   }
-  if (s.reuse == PELLUCID_REUSE_NONE && random.chance(0.3)) {
+  if ((s.reuse == PELLUCID_REUSE_NONE || s.reuse == PELLUCID_REUSE_ACCUMULATE) && random.chance(0.3)) {
     const auto place = [&] { return static_cast<float>(random.real(-50, 50)); };
     s.anchor = {place(), place(), place(), 1};
   }

@@ -138,10 +138,10 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
     // Frames by turns have the upper and the lower half, and each cell takes all patterns in as many frames.
     const int half = static_cast<int>(parts(facts.lattice.extent.y, facts.gatherSpacing));
     const int age = static_cast<int>(state.history.age % (2 * PELLUCID_PATTERNS)), odd = age % 2;
-    constexpr int kPatternStep = 23;  // next to .38 of them, the golden section, and prime to their number
+    constexpr int kPatternStep = 50;  // turns then step by .28 of a turn, and places in a ring by .39 of the ring
     c.lattice.z = (c.lattice.z + kPatternStep * age) % PELLUCID_PATTERNS;
     c.lattice.w = odd * half;
-    c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, half};
+    c.kept = {state.kept.first[0], state.kept.first[1], (1 - odd) * half, 0};
     c.motion = {f.options.motionScale[0] * static_cast<float>(f.imageExtent[0]),
                 f.options.motionScale[1] * static_cast<float>(f.imageExtent[1]),
                 state.kept.valid != 0 ? f.preExposure / state.kept.preExposure : 0, 0};

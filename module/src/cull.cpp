@@ -26,9 +26,10 @@ ViewBounds::ViewBounds(const Setup& setup) : setup_(setup) {
   bounded_ = parallel_ || range.d == 0;
   forward_ = range.forward;
 
-  // The rect's corners, half a pixel outside of the centers that the shaders use.
-  const Rect& r = setup.rect;
-  const double left = r.x - 0.5, top = r.y - 0.5, right = left + r.width, bottom = top + r.height;
+  // The image's corners, half a pixel outside of the centers that the shaders use. The rect's own would drop more lights, but the
+  // caller's images serve every rect, so that no rect may change which images there are.
+  const double left = setup.lattice.first.x - 0.5, top = setup.lattice.first.y - 0.5;
+  const double right = left + setup.frame.imageExtent[0], bottom = top + setup.frame.imageExtent[1];
   const glm::dvec2 corners[4] = {{left, top}, {right, top}, {right, bottom}, {left, bottom}};
   std::array<glm::dvec3, 4> directions;
   axis_ = glm::dvec3(0);

@@ -25,7 +25,9 @@ double texelSide(const PellucidShadowMap& map) {
     // An axis that is off center leans along the view; that does not make texels smaller.
     const glm::dvec3 row = linear(clip, i),
                      across = perspective ? row - w * (glm::dot(row, w) / glm::dot(w, w)) : row;
-    side = std::max(side, 2 * (perspective ? glm::length(w) : 1) / (glm::length(across) * map.extent[i]));
+    // The matrix may have any factor.
+    const double one = perspective ? glm::length(w) : std::abs(clip[3][3]);
+    side = std::max(side, 2 * one / (glm::length(across) * map.extent[i]));
   }
   return side;
 }

@@ -49,7 +49,7 @@ Stages::Stages(const Setup& setup, const Lights& all, const Blocks& blocks) {
   copies = diffusion && !lights && walls == 0 && !setup.separate();
   // Without diffusion the fused pass still has to bring irradiance (times albedo) to the output, unless that
   // is what it is.
-  nothing = writers() == 0 && setup.inPlace() && !setup.has(PELLUCID_RESOURCE_ALBEDO);
+  nothing = writers() == 0 && setup.inPlace() && !setup.has(PELLUCID_RESOURCE_ALBEDO) && !debug;
   if (writers() == 0 && !nothing) fused = 1;
   keepsHistory =
       setup.frame.options.reuse != PELLUCID_REUSE_NONE && !debug && translucency && all.lightCount > 0;

@@ -277,10 +277,16 @@ constexpr Pass kAccumulateProbesPass{.pipeline = "accumulate_probes",
                                      .writes = kFilterProbesPass.writes,
                                      .constants = kAccumulates};
 
+// With accumulation, over all blocks: the next frame reads cells that lost their material, too.
 void addProbeFilter(Planner& p) {
-  p.add(p.facts.stages.accumulates ? kAccumulateProbesPass : kFilterProbesPass, "filter probes")
-      .blocks(PELLUCID_LIST_FILTER, partsOfBlock(p.facts, PELLUCID_FILTER_GROUP))
-      .push(0, p.facts.gatherSpacing);
+  const bool accumulates = p.facts.stages.accumulates;
+  const uint32_t perBlock = partsOfBlock(p.facts, PELLUCID_FILTER_GROUP);
+  Step step = p.add(accumulates ? kAccumulateProbesPass : kFilterProbesPass, "filter probes");
+  step.push(0, p.facts.gatherSpacing);
+  if (accumulates)
+    step.groups(p.facts.blocks.count(), perBlock);
+  else
+    step.blocks(PELLUCID_LIST_FILTER, perBlock);
 }
 
 // ---- All ----------------------------------------------------------------------------------------------

@@ -47,7 +47,8 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
   now.preExposure = f.frame.preExposure;
-  std::copy(f.frame.imageExtent, f.frame.imageExtent + 2, now.extent);
+  // With an anchor the history is larger, and its rows lie elsewhere.
+  now.extent[0] = f.lattice.extent.x, now.extent[1] = f.lattice.extent.y;
   now.rect = renderRect(f.frame);
   now.first[0] = f.lattice.first.x, now.first[1] = f.lattice.first.y;
   now.lightCount = f.lights.lightCount;

@@ -35,6 +35,18 @@ inline bool falls(const float (&t)[5]) {
          a1 * k1 + a2 * k2 >= -1e-4 * most * std::max(k1, k2);
 }
 
+// Of EXP2 and SINH_EXP, which 5 parameters alone define; d >= 0 mm.
+inline double transmittance(uint32_t model, const float* parameters, double d) {
+  const auto p = [&](int i) { return static_cast<double>(parameters[i]); };
+  if (model == PELLUCID_TRANSMITTANCE_EXP2) return p(0) * std::exp(-p(1) * d) + p(2) * std::exp(-p(3) * d);
+  // 1 / sinh y = 2 e^{-y} / (1 - e^{-2y}) does not overflow.
+  const double y = p(1) * d + p(2);
+  return p(0) * 2 * std::exp(-y) / -std::expm1(-2 * y) + p(3) * std::exp(-p(4) * d);
+}
+
+// Largest T(0): what fits in floats miss.
+constexpr double kMostTransmittance = 1.001;
+
 // Refuses parameters that the model of materials[index] cannot have.
 inline void checkTransmittance(const PellucidMaterial& m, uint32_t index, Findings& out) {
   const bool gaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
@@ -51,6 +63,12 @@ inline void checkTransmittance(const PellucidMaterial& m, uint32_t index, Findin
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && !(t[1] >= 0 && t[2] > 0 && t[4] >= 0))
       out.error(field, "of channel ", c, " needs kappa >= 0, z > 0, c >= 0; they are ", t[1], ", ", t[2],
                 ", ", t[4]);
+    // The gather takes kappa for the slowest rate, by which light goes furthest.
+    else if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP && t[3] != 0 && t[4] < t[1])
+      out.error(field, "of channel ", c, " has c ", t[4], " below kappa ", t[1], "; use c >= kappa, or b = 0 in place of ", t[3]);
+    else if (canBeGathered(m.transmittanceModel) && transmittance(m.transmittanceModel, t, 0) > kMostTransmittance)
+      out.error(field, "of channel ", c, " gives a slab without thickness ", static_cast<float>(transmittance(m.transmittanceModel, t, 0)),
+                " of the light; scale the amplitudes ", t[0], " and ", t[m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 ? 2 : 3], " so that it is at most 1");
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR && !(t[0] > 0))
       out.error(field, "of channel ", c, " has dmax ", t[0], "; must be > 0");
   }
@@ -67,15 +85,6 @@ inline std::array<float, 5> shaderParameters(const PellucidMaterial& m, int chan
 // c of e^{-c d^2 / v} of the models that take the profile's Gaussians, of variance v.
 inline double gaussianExponent(uint32_t model) {
   return model == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED ? 1 : 0.5;
-}
-
-// Of EXP2 and SINH_EXP, which 5 parameters alone define; d >= 0 mm.
-inline double transmittance(uint32_t model, const float* parameters, double d) {
-  const auto p = [&](int i) { return static_cast<double>(parameters[i]); };
-  if (model == PELLUCID_TRANSMITTANCE_EXP2) return p(0) * std::exp(-p(1) * d) + p(2) * std::exp(-p(3) * d);
-  // 1 / sinh y = 2 e^{-y} / (1 - e^{-2y}) does not overflow.
-  const double y = p(1) * d + p(2);
-  return p(0) * 2 * std::exp(-y) / -std::expm1(-2 * y) + p(3) * std::exp(-p(4) * d);
 }
 
 // T of a thin wall, or of any model; NaN for one that is not known.

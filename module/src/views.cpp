@@ -27,6 +27,14 @@ Field fieldOf(uint32_t resource) {
   return Field(pellucidResourceName(resource));
 }
 
+// The name of the lowest PellucidUse bit of a pass.
+const char* useOf(uint32_t uses) {
+  if (uses & PELLUCID_USE_TRANSLUCENCY) return "PELLUCID_USE_TRANSLUCENCY";
+  if (uses & PELLUCID_USE_GATHER) return "PELLUCID_USE_GATHER";
+  if (uses & PELLUCID_USE_DIFFUSION) return "PELLUCID_USE_DIFFUSION";
+  return uses & PELLUCID_USE_REUSE ? "PELLUCID_USE_REUSE" : "PELLUCID_USE_DEBUG_VIEWS";
+}
+
 // Refuses plans that ask for another context.
 void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& out) {
   const PlanState state = stateOf(plan);
@@ -49,12 +57,13 @@ void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& 
                      ", but PellucidContextOptions::shadowViewType is 2D");
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const uint32_t pipeline = plan.dispatches[i].pipeline;
-    if (pipeline >= allPasses().size() || c.pipelines[pipeline] == VK_NULL_HANDLE)
-      return out.error(
-          "plan", "needs pipeline ", pellucidPipelineName(pipeline),
-          c.desc.options.deferPipelines
-              ? ", which pellucidCreatePipelines has not made or PellucidContextOptions::uses leaves out"
-              : ", which PellucidContextOptions::uses leaves out");
+    if (pipeline >= allPasses().size()) return out.error("plan", "needs pipeline ", pellucidPipelineName(pipeline));
+    const uint32_t lacks = c.desc.options.uses != 0 ? allPasses()[pipeline]->uses & ~c.desc.options.uses : 0;
+    if (lacks != 0)
+      return out.error("plan", "needs PellucidContextOptions::uses with ", useOf(lacks), " for its dispatch \"", plan.dispatches[i].name, "\"");
+    if (c.pipelines[pipeline] == VK_NULL_HANDLE)
+      return out.error("plan", "needs pipeline ", pellucidPipelineName(pipeline),
+                       ", which is not made; call pellucidCreatePipelines with the plan");
   }
 }
 

@@ -64,7 +64,8 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
                        replay(litSlab(), testMaterial(), s)));
   const std::string said =
       refusalOf([&] { record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, {})); });
-  EXPECT_NE((said + diffusion.message()).find("plan needs pipeline translucency"), std::string::npos) << said;
+  EXPECT_NE((said + diffusion.message()).find("plan needs PellucidContextOptions::uses with PELLUCID_USE_TRANSLUCENCY"), std::string::npos)
+      << said;
   const auto unknown = [](PellucidContextDesc& desc) { desc.options.uses = 1u << 20; };
   EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
 }

@@ -56,6 +56,21 @@ Image specular(const Capture& c) {
   return held;
 }
 
+// What the output holds may be below 0: the sum is clamped, and not its parts.
+TEST_F(EngineFrames, HeldColorsBelowZeroTakeFromTheSum) {
+  const Capture c = flatCapture(16, 8);
+  ReplaySettings s = inFloats(0);
+  s.addToOutput = 1;
+  const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
+  const struct {
+    float held, sum;
+  } rows[] = {{-0.25f, 0.75f}, {-1.5f, 0}, {NAN, 1}, {-INFINITY, 0}, {INFINITY, 65504}, {1e30f, 65504}};
+  for (const auto& row : rows) {
+    run.uploadOutput(Image(c.width, c.height, 4, row.held));
+    EXPECT_NEAR(record(run).at(5, 3)[0], row.sum, 1e-6) << row.held;
+  }
+}
+
 struct Added {
   const char* name;
   VkFormat format;

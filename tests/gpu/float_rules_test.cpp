@@ -14,7 +14,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 PFN_vkCreateShaderModule createShaderModule;
 PFN_vkGetDeviceProcAddr getDeviceProcAddr;
-size_t changedComparisons;
+size_t changedComparisons, changedLogarithms;
 
 // OpFOrdEqual to OpFOrdGreaterThanEqual have even numbers, each before its unordered form.
 VkResult VKAPI_CALL createUnordered(VkDevice device, const VkShaderModuleCreateInfo* info,
@@ -32,11 +32,46 @@ VkResult VKAPI_CALL createUnordered(VkDevice device, const VkShaderModuleCreateI
   return createShaderModule(device, &changed, allocator, module);
 }
 
+// Adds 2^-21 to each scalar log2, as its error may be where the result is near 0 (Vulkan, "Precision and Operation of SPIR-V
+// Instructions").
+VkResult VKAPI_CALL createInexact(VkDevice device, const VkShaderModuleCreateInfo* info, const VkAllocationCallbacks* allocator,
+                                  VkShaderModule* module) {
+  constexpr uint32_t kHeader = 5, kExtInst = 12, kTypeFloat = 22, kConstant = 43, kFunction = 54, kFAdd = 129, kLog2 = 30;
+  constexpr float kError = 0x1p-21f;
+  const std::vector<uint32_t> words(info->pCode, info->pCode + info->codeSize / 4);
+  std::vector<uint32_t> changed(words.begin(), words.begin() + kHeader);
+  uint32_t scalar = 0, error = 0;
+  for (size_t i = kHeader; i < words.size(); i += words[i] >> 16) {
+    const uint32_t op = words[i] & 0xFFFF;
+    if (op == kTypeFloat && words[i + 2] == 32) scalar = words[i + 1];
+    if (op == kFunction && error == 0) {
+      error = changed[3]++;
+      uint32_t bits;
+      std::memcpy(&bits, &kError, sizeof bits);
+      changed.insert(changed.end(), {4 << 16 | kConstant, scalar, error, bits});
+    }
+    const size_t at = changed.size();
+    changed.insert(changed.end(), words.begin() + static_cast<std::ptrdiff_t>(i),
+                   words.begin() + static_cast<std::ptrdiff_t>(i + (words[i] >> 16)));
+    if (op != kExtInst || words[i + 1] != scalar || words[i + 4] != kLog2) continue;
+    const uint32_t exact = changed[3]++, result = words[i + 2];
+    changed[at + 2] = exact;
+    changed.insert(changed.end(), {5 << 16 | kFAdd, scalar, result, exact, error});
+    ++changedLogarithms;
+  }
+  VkShaderModuleCreateInfo other = *info;
+  other.pCode = changed.data();
+  other.codeSize = changed.size() * sizeof(uint32_t);
+  return createShaderModule(device, &other, allocator, module);
+}
+
+PFN_vkCreateShaderModule createsInstead;  // of vkCreateShaderModule
+
 PFN_vkVoidFunction VKAPI_CALL deviceFunction(VkDevice device, const char* name) {
   const PFN_vkVoidFunction function = getDeviceProcAddr(device, name);
   if (std::string(name) != "vkCreateShaderModule") return function;
   createShaderModule = reinterpret_cast<PFN_vkCreateShaderModule>(function);
-  return reinterpret_cast<PFN_vkVoidFunction>(&createUnordered);
+  return reinterpret_cast<PFN_vkVoidFunction>(createsInstead);
 }
 
 PFN_vkVoidFunction VKAPI_CALL instanceFunction(VkInstance instance, const char* name) {
@@ -80,6 +115,7 @@ Capture spoiled(PellucidDepthEncoding encoding) {
 TEST_F(GpuTest, NoGuardReliesOnComparisonsThatAreFalseForNan) {
   const Context& plain = replayer().contextFor({});
   changedComparisons = 0;
+  createsInstead = &createUnordered;
   const Context unordered(device(),
                           [](PellucidContextDesc& d) { d.getInstanceProcAddr = &instanceFunction; });
   for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_DISTANCE})
@@ -95,6 +131,22 @@ TEST_F(GpuTest, NoGuardReliesOnComparisonsThatAreFalseForNan) {
           << "encoding " << encoding << ", samples " << samples;
     }
   EXPECT_GT(changedComparisons, 100u);
+}
+
+// The stored surface is the receiver: all light comes through, however the mean of four thicknesses of 0 is rounded.
+TEST_F(GpuTest, ThicknessZeroIsNoLessWhereLogarithmsAreInexact) {
+  changedLogarithms = 0;
+  createsInstead = &createInexact;
+  const Context inexact(device(), [](PellucidContextDesc& d) { d.getInstanceProcAddr = &instanceFunction; });
+  Capture c = flatCapture(32, 24);
+  c.lights = {backLight()};
+  c.lights[0].shadowMaps = {flatShadowMap(-10, PELLUCID_DEPTH_VIEW_Z)};
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
+  s.translucency.gatherSamples = 0;
+  const Image out = record(FrameRun(device(), inexact, c, {testMaterial()}, s));
+  EXPECT_GT(changedLogarithms, 0u);
+  // E + T(0) E_back / rho; 1e-5: arithmetic of floats.
+  for (int x = 0; x < c.width; ++x) EXPECT_NEAR(out.at(x, 11)[0], 7, 7e-5) << x;
 }
 
 }  // namespace

@@ -180,6 +180,51 @@ TEST_F(Motion, LightThatChangesDoesNotLinger) {
   }
 }
 
+// What a history holds at first is nobody's light: neither around the rect nor where a frame had no material.
+TEST_F(Motion, BytesOfAFreshHistoryAreNotRead) {
+  const Capture& c = ball();
+  Capture part = c;  // pixels that lose their material, by groups of the filter
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x)
+      if (x / 16 % 2 == y / 16 % 2) part.material[static_cast<size_t>(y * c.width + x)] = 0;
+  Capture moved = c;
+  moved.motion = Image(c.width, c.height, 4, 0.06f);
+  ReplaySettings s = accumulated();
+  s.renderRect = {9, 5, 80, 70};
+  const auto lastOf = [&](std::uint64_t garbage) {
+    const std::vector materials{skin()};
+    const Context& context = replayer().contextFor(c);
+    const FrameRun first(device(), context, part, materials, s);
+    first.fillGarbage(garbage);
+    record(first);
+    return record(FrameRun(device(), context, moved, materials, s, &first));
+  };
+  const Image zeros = lastOf(0);
+  for (const float v : zeros.data) ASSERT_TRUE(std::isfinite(v));
+  for (const std::uint64_t garbage : {1u, 2u, 3u}) EXPECT_TRUE(sameBits(lastOf(garbage), zeros)) << garbage;
+}
+
+// Cells of 1.3 mm of skin are too far apart to have patterns of their own in a single frame.
+TEST_F(Motion, CellsThatHardlyShareAverageOverFramesToo) {
+  SceneParameters p{.name = "sphere", .options = {{"radius", 16}, {"extent", 48}, {"lightAngle", 110}}};
+  p.width = p.height = 72;
+  p.shadowSize = 160;
+  const Capture c = makeScene(p);
+  ReplaySettings kept = accumulated(2), many = gathering(64, 2), few = gathering(8, 2);
+  kept.features = many.features = few.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Image expected = rgbOf(c, many);
+  const double alone = rmse(c, rgbOf(c, few), expected);
+  Sequence sequence;
+  Image before, last = next(sequence, c, kept);
+  for (int i = 0; i < 14; ++i) {
+    before = std::move(last);
+    last = next(sequence, c, kept);
+    EXPECT_FALSE(sameBits(before, last)) << "frame " << i << " takes the samples of the one before";
+  }
+  EXPECT_LT(rmse(c, last, expected), 0.95 * alone);
+  EXPECT_LT(rmse(c, last, before), 0.3 * alone) << "it flickers";
+}
+
 // Kept light has the exposure of its frame.
 TEST_F(Motion, ExposureMayChange) {
   const Capture& c = ball();

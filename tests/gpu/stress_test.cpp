@@ -64,6 +64,51 @@ std::string refusal(const StressFrame& f) {
   return pellucidValidateFrame(&data.frame, &appendError, &sentences) == PELLUCID_OK ? "" : sentences + " ";
 }
 
+// The view of a transient or history that the plan binds and the frame lacks; none: 0.
+uint32_t unbound(const PellucidFrame& f, const PellucidPlan& plan) {
+  for (uint32_t d = 0; d < plan.dispatchCount; ++d) {
+    PellucidBinding bound[PELLUCID_MAX_BINDINGS];
+    const uint32_t count = pellucidGetBindings(&plan, d, bound);
+    for (uint32_t i = 0; i < count; ++i) {
+      const uint32_t transient = bound[i].resource - PELLUCID_RESOURCE_TRANSIENT0;
+      if (transient < PELLUCID_MAX_TRANSIENTS && !f.transients[transient].view) return bound[i].resource;
+      if (bound[i].resource == PELLUCID_RESOURCE_HISTORY && !f.options.history.view) return bound[i].resource;
+    }
+  }
+  return 0;
+}
+
+// The images of the whole image are all that any rect binds, and what a plan binds and a frame lacks, validation refuses.
+TEST(StressFrames, BindNoViewThatValidationDoesNotAskFor) {
+  for (std::uint64_t i = 0; i < 600; ++i) {
+    StressFrame f = randomFrame(4, i, pool(), {4096, 256});
+    if (i % 3 == 0) f.settings.reuse = PELLUCID_REUSE_ACCUMULATE;
+    FrameData data;
+    makeFrame(f.capture, f.materials, f.settings, data);
+    PellucidFrame& frame = data.frame;
+    if (pellucidValidateFrame(&frame, nullptr, nullptr) != PELLUCID_OK) continue;
+    PellucidFrame whole = frame;
+    std::fill_n(whole.options.renderRect, 4, 0u);
+    PellucidImageNeed needs[kMaxImageNeeds];
+    uint32_t count = kMaxImageNeeds;
+    ASSERT_EQ(pellucidGetImageNeeds(&whole, &count, needs), PELLUCID_OK) << i;
+    const PellucidImage given = frame.frontDepth;
+    std::fill_n(frame.transients, PELLUCID_MAX_TRANSIENTS, PellucidImage{});
+    frame.options.history = {};
+    for (uint32_t k = 0; k < count; ++k) (needs[k].persistent ? frame.options.history : frame.transients[k]) = given;
+    PellucidPlan plan;
+    ASSERT_EQ(pellucidBuildPlan(&frame, nullptr, &plan), PELLUCID_OK) << i;
+    EXPECT_EQ(unbound(frame, plan), 0u) << i;
+    EXPECT_EQ(pellucidValidateFrame(&frame, nullptr, nullptr), PELLUCID_OK) << i;
+    for (uint32_t k = 0; k < PELLUCID_MAX_TRANSIENTS; ++k) {
+      PellucidFrame lacking = frame;
+      lacking.transients[k] = {};
+      const bool refused = pellucidValidateFrame(&lacking, nullptr, nullptr) != PELLUCID_OK;
+      EXPECT_TRUE(refused || unbound(lacking, plan) == 0) << i << ", transient " << k;
+    }
+  }
+}
+
 TEST(StressFrames, HoldEveryOptionAndAreAccepted) {
   std::map<std::string, int> seen;
   int refused = 0;

@@ -185,7 +185,7 @@ inline nlohmann::json writeSampleFiles(const std::filesystem::path& directory) {
 inline bool sameBits(const Image& a, const Image& b) {
   return a.width == b.width && a.height == b.height && a.channels == b.channels &&
          a.data.size() == b.data.size() &&
-         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+         (a.data.empty() || std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0);
 }
 
 inline void expectSame(const DepthImage& a, const DepthImage& b) {

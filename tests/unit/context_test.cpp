@@ -27,7 +27,15 @@ void* operator new(size_t size, const std::nothrow_t&) noexcept {
     return nullptr;
   }
 }
-void* operator new[](size_t size, const std::nothrow_t& tag) noexcept { return ::operator new(size, tag); }
+// Of its own, as sanitizers tell what delete[] frees from what delete does.
+void* operator new[](size_t size, const std::nothrow_t&) noexcept {
+  if (failingNew >= 0 && failingNew-- == 0) return nullptr;
+  try {
+    return ::operator new[](size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 
 namespace {
 

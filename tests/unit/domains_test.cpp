@@ -358,6 +358,32 @@ TEST(Domains, TransmittanceThatRisesIsRefused) {
   }
 }
 
+// One thickness a pixel ends T at 1, and the gather goes as far as kappa says: elsewhere the two would differ.
+TEST(Domains, TransmittanceBeyondWhatTheGatherTakesIsRefused) {
+  struct Row {
+    uint32_t model;
+    float t[5];
+    const char* refused;  // empty: allowed
+  };
+  constexpr uint32_t kExp2 = PELLUCID_TRANSMITTANCE_EXP2, kSinhExp = PELLUCID_TRANSMITTANCE_SINH_EXP;
+  for (const Row& row : {Row{kSinhExp, {0.0578f, 9.73f, 0.389f, 0.774f, 9.73f}, ""},
+                         {kSinhExp, {0.0578f, 9.73f, 0.389f, 0.774f, 0.573f}, "has c 0.573 below kappa 9.73"},
+                         {kSinhExp, {0.0578f, 9.73f, 0.389f, 0, 0}, ""},
+                         {kSinhExp, {1.206f, 5.97f, 0.194f, 0.0238f, 6.8f}, "without thickness 6.2"},
+                         {kExp2, {0.6f, 1, 0.4005f, 2, 0}, ""},
+                         {kExp2, {0.6f, 1, 0.5f, 2, 0}, "without thickness 1.1"}}) {
+    Whole f;
+    f.material.transmittanceModel = row.model;
+    for (float(&channel)[5] : f.material.transmittance) std::copy(row.t, row.t + 5, channel);
+    const std::string problems = f.problems();
+    if (*row.refused == '\0')
+      EXPECT_EQ(problems, "");
+    else
+      EXPECT_NE(problems.find("materials[0].transmittance of channel 0 "), std::string::npos) << problems;
+    EXPECT_NE(problems.find(row.refused), std::string::npos) << problems;
+  }
+}
+
 TEST(Domains, ClipMatricesWithoutPixelSizeAreRefused) {
   for (const float scale : {1e30f, 1e-30f, 1e14f, 1e-13f}) {
     Whole f;

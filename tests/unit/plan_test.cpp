@@ -7,6 +7,7 @@
 #include <map>
 
 #include "context.h"
+#include "entry_points.h"
 #include "frame_fixture.h"
 #include "shared/pellucid_shared.h"
 
@@ -135,6 +136,65 @@ TEST(Plan, IrradianceThatIsTheOutputIsLeftAlone) {
 }
 
 // The default frame, as docs/how-it-works.md lists it.
+// A debug view is written whether or not anything else is.
+TEST(Plan, DebugViewsInPlaceAreWritten) {
+  for (const uint32_t features : {0u, uint32_t{PELLUCID_FEATURE_TRANSLUCENCY}, Frame().frame.options.features}) {
+    Frame f(0);
+    f.frame.lightCount = 0;
+    f.frame.options.features = features;
+    f.frame.output = f.frame.irradiance;
+    f.frame.options.debugView = PELLUCID_DEBUG_THICKNESS;
+    EXPECT_EQ(names(f.plan()), Names{"debug view"}) << features;
+  }
+}
+
+// The caller's images serve every render rect, also one that a light does not reach.
+TEST(Plan, NoRectChangesTheImages) {
+  const auto needs = [](const Frame& f) {
+    std::vector<PellucidImageNeed> all(PELLUCID_MAX_TRANSIENTS + 1);
+    auto count = static_cast<uint32_t>(all.size());
+    EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &count, all.data()), PELLUCID_OK) << f.problems();
+    all.resize(count);
+    return all;
+  };
+  for (const uint32_t samples : {0u, 8u})
+    for (const PellucidReuse reuse : {PELLUCID_REUSE_NONE, PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_ACCUMULATE}) {
+      Frame f(0);
+      f.lights[0].type = PELLUCID_LIGHT_POINT;
+      f.lights[0].position[0] = 9;
+      f.lights[0].position[2] = -10;
+      f.lights[0].range = 3;
+      f.frame.options.gatherSamples = samples;
+      f.frame.options.reuse = reuse;
+      f.frame.imageExtent[0] = f.frame.imageExtent[1] = 64;
+      const std::vector<PellucidImageNeed> whole = needs(f);
+      f.frame.options.renderRect[2] = 16;
+      f.frame.options.renderRect[3] = 64;
+      const std::vector<PellucidImageNeed> part = needs(f);
+      ASSERT_EQ(part.size(), whole.size()) << samples << ", reuse " << reuse;
+      for (size_t i = 0; i < part.size(); ++i) {
+        EXPECT_EQ(part[i].format, whole[i].format) << i;
+        EXPECT_TRUE(std::equal(part[i].extent, part[i].extent + 2, whole[i].extent)) << i;
+        EXPECT_EQ(part[i].persistent, whole[i].persistent) << i;
+      }
+    }
+}
+
+// Clip coordinates are homogeneous.
+TEST(Plan, TexelsHaveTheirSideWhateverTheFactorOfTheMatrix) {
+  Frame f;
+  f.maps[0].clipFromWorld[0] = 0.2f;
+  const PellucidShadowMap orthographic = f.maps[0];
+  PellucidShadowMap perspective = orthographic;
+  perspective.clipFromWorld[11] = -1, perspective.clipFromWorld[15] = 0;
+  for (PellucidShadowMap map : {orthographic, perspective}) {
+    const double side = pellucid::texelSide(map);
+    EXPECT_GT(side, 0);
+    for (float& v : map.clipFromWorld) v *= 8;
+    EXPECT_EQ(pellucid::texelSide(map), side);
+  }
+}
+
 TEST(Plan, GathersBesideTheDiffusion) {
   const Names all = {"base level", "downsample", "entry points",  "coarse levels",
                      "probes",     "upsample",   "filter probes", "diffuse"};
@@ -683,7 +743,8 @@ TEST(Plan, TablesOfMaterialsHoldWhatFramesFindWithoutThem) {
           f.frame.options.gatherSamples = samples;
           f.material.transmittanceModel = model;
           f.material.thinWalled = thinWalled;
-          for (float(&t)[5] : f.material.transmittance) t[4] = 1;
+          // Parameters of all models.
+          for (float(&t)[5] : f.material.transmittance) t[0] = 0.1f, t[3] = 0.2f, t[4] = 1;
           const std::vector<unsigned char> without = constantsOf(f);
           PellucidMaterialTables tables;
           ASSERT_EQ(pellucidMakeMaterialTables(&f.material, &tables), PELLUCID_OK);

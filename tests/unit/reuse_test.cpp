@@ -67,6 +67,22 @@ TEST(Reuse, CoherenceOfATurningLight) {
   }
 }
 
+// With an anchor the history has more rows.
+TEST(Reuse, AccumulationBeginsAnewWhereAnAnchorComesOrGoes) {
+  Sequence s(PELLUCID_REUSE_ACCUMULATE);
+  s.frame.options.gatherSamples = 8;
+  s.frame.motion = Frame::view();
+  uint32_t age = 0;
+  for (const float anchored : {0.0f, 0.0f, 1.0f, 1.0f, 0.0f}) {
+    const bool changes = anchored != s.frame.options.anchor[3];
+    s.frame.options.anchor[2] = -5;
+    s.frame.options.anchor[3] = anchored;
+    s.refreshes();
+    EXPECT_EQ(s.last.historyAge, changes || age == 0 ? 0 : age) << anchored;
+    age = s.last.historyAge + 1;
+  }
+}
+
 TEST(Reuse, TheCameraTurnsTheCosineToo) {
   Sequence s(PELLUCID_REUSE_COHERENCE);
   EXPECT_TRUE(s.refreshes());

@@ -31,9 +31,9 @@ enum { PELLUCID_MAX_GAUSSIANS = 8 };
 /* Formula of T(d), the part of the flux into one face of a slab of thickness d (mm) that leaves by the other face.
  * PellucidMaterial::transmittance[channel] has the parameters, in the order of the comment. */
 typedef enum PellucidTransmittanceModel {
-  /* a1, k1, a2, k2: a1 e^{-k1 d} + a2 e^{-k2 d}. */
+  /* a1, k1, a2, k2: a1 e^{-k1 d} + a2 e^{-k2 d}, which falls with d from T(0) <= 1 on. */
   PELLUCID_TRANSMITTANCE_EXP2 = 0,
-  /* a, kappa, z, b, c: a / sinh(kappa d + z) + b e^{-c d}. */
+  /* a, kappa, z, b, c: a / sinh(kappa d + z) + b e^{-c d} with kappa >= 0, z > 0, c >= kappa unless b is 0, and T(0) <= 1. */
   PELLUCID_TRANSMITTANCE_SINH_EXP = 1,
   /* No parameters: the sum of w_i e^{-d^2 / (2 v_i)} over the Gaussians of weight w_i and variance v_i. The sum is the integral of
    * R(sqrt(r^2 + d^2)) over a plane, with the diffusion profile R (d'Eon & Luebke 2007). */

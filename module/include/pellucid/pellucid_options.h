@@ -14,11 +14,11 @@ extern "C" {
 /* ---- Context ----------------------------------------------------------------------------------- */
 
 /* Features that the frames of a context use, as bits. The context makes only the pipelines whose features are all in `uses`. Recording
- * refuses a plan that needs another pipeline or feature. */
+ * refuses a plan that needs another feature, and names the PellucidUse. */
 typedef enum PellucidUse {
-  /* Light with one thickness a pixel, and thin walls. */
+  /* Light with one thickness a pixel, and thin walls. Frames that only copy the irradiance need it, too. */
   PELLUCID_USE_TRANSLUCENCY = 1 << 0,
-  /* Light that the gather finds. */
+  /* Light that the gather finds. It needs DIFFUSION, too. */
   PELLUCID_USE_GATHER = 1 << 1,
   /* Light that spreads under the surface. */
   PELLUCID_USE_DIFFUSION = 1 << 2,
@@ -211,7 +211,8 @@ typedef struct PellucidFrameOptions {
   /* Change of the cosine that COHERENCE tolerates, 0..2; default .005. Whelan 2009, 4.7.5, multiplies the threshold by frame time / budget
    * if this quotient is above 1. */
   float coherenceThreshold;
-  /* Required by reuse: the persistent image of pellucidGetImageNeeds, in layout GENERAL, the same image in all frames. */
+  /* Required by reuse: the persistent image of pellucidGetImageNeeds, in layout GENERAL, the same image in all frames. Any content at
+   * first: frames without a previous plan, and after another size, rect or anchor.w, read nothing of it. */
   PellucidImage history;
   /* PellucidDebugView; default NONE. */
   uint32_t debugView;
