@@ -3,15 +3,17 @@
     blender -b scene.blend -P blender_capture.py -- -o out/                   the current frame: out/capture.json
     blender -b scene.blend -P blender_capture.py -- -o out/ --frames 1-250    out/capture.0001.json and so on
 
-Options: --replay build/bin/pellucid (also makes out/picture.exr and .png), --shadow-size 1024, --samples 16 (of lights that
-have a size), --truth SAMPLES (diffuse light of the file's own materials).
+Options: --replay build/bin/pellucid (also makes out/picture.exr and .png), --shadow-size 1024, --samples 16 (of soft and bounced
+light), --truth SAMPLES (diffuse light of the file's own materials, with its standard error).
 The scene in the file stays as it is. Installed as an add-on, the script has a panel in the properties of the render.
 """
 import argparse
 import array
 import contextlib
+import fnmatch
 import json
 import math
+import operator
 import os
 import struct
 import subprocess
@@ -47,8 +49,14 @@ class Refused(Exception):
     """Says in a sentence what the scene lacks."""
 
 
+SAID = set()
+
+
 def say(sentence):
-    print("pellucid:", sentence, file=sys.stderr)
+    """Once a run: frames have most sentences in common."""
+    if sentence not in SAID:
+        SAID.add(sentence)
+        print("pellucid:", sentence, file=sys.stderr)
 
 
 # ---- Materials
@@ -313,6 +321,17 @@ class Beside:
         ior = first_input(node, *(("Subsurface IOR", "IOR") if of_skin else ("IOR", "Subsurface IOR")))
         return self.triple(1.0, first_input(node, "Subsurface Anisotropy", "Anisotropy") or 0.0, ior or 1.4)
 
+    def with_holes(self, node):
+        """The shader where the material's alpha has no holes."""
+        alpha = self.node.inputs.get("Alpha")
+        if not alpha or not alpha.links and alpha.default_value == 1:
+            return node
+        mix = self.new("ShaderNodeMixShader")
+        self.feed(alpha, mix.inputs[0])
+        self.tree.links.new(self.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+        self.tree.links.new(node.outputs[0], mix.inputs[2])
+        return mix
+
     def diffuse(self):
         """A shader that reflects all of the diffuse light at the surface."""
         node = self.new("ShaderNodeBsdfDiffuse")
@@ -320,7 +339,7 @@ class Beside:
         normal = self.node.inputs.get("Normal")
         if normal and normal.links:
             self.feed(normal, node.inputs["Normal"])
-        return node
+        return self.with_holes(node)
 
     def times_by_index(self, vector, factors):
         """Times the three factors of the material's pass index; not black, so that light is known of it."""
@@ -334,7 +353,7 @@ class Beside:
         """A shader whose picture is a value."""
         node = self.new("ShaderNodeEmission")
         self.feed(value, node.inputs["Color"])
-        return node
+        return self.with_holes(node)
 
 
 @contextlib.contextmanager
@@ -437,7 +456,7 @@ def measured(materials, folder):
         with in_place_of(found, showing(value)), changed((scene.cycles, "samples", 1), (scene.cycles, "max_bounces", 0),
                                                          (scene.render.image_settings, "exr_codec", "NONE")):
             render(path)
-        return read_exr(path, ("Emit.R", "Emit.G", "Emit.B", "IndexMA.X"))
+        return read_exr(path, ("Emit.R", "Emit.G", "Emit.B", "IndexMA.X"), 2 ** 18)
 
     pictures = [picture(value) for value in (
         lambda b: b.times(b.medium(), b.share()), lambda b: b.times(b.color(), b.share()), lambda b: b.color(),
@@ -484,15 +503,82 @@ def rendered_instances(depsgraph):
             yield instance
 
 
+def boxes(depsgraph, names=None):
+    """Corners of the box of each mesh that is rendered, in the world; names: only of meshes with one of these materials."""
+    found = []
+    for instance in rendered_instances(depsgraph):
+        slots = {slot.material.name for slot in instance.object.original.material_slots if slot.material}
+        if instance.object.type in ("MESH", "CURVE", "SURFACE", "META", "FONT") and (names is None or slots & names):
+            found.append([instance.matrix_world @ Vector(corner) for corner in instance.object.bound_box])
+    return found
+
+
 def bounds(depsgraph):
     """Corners of the boxes of all meshes that are rendered, in the world."""
-    corners = []
-    for instance in rendered_instances(depsgraph):
-        if instance.object.type in ("MESH", "CURVE", "SURFACE", "META", "FONT"):
-            corners += [instance.matrix_world @ Vector(corner) for corner in instance.object.bound_box]
+    corners = [corner for box in boxes(depsgraph) for corner in box]
     if not corners:
         raise Refused("the scene has nothing that a render shows")
     return corners
+
+
+def source_of(socket):
+    """(node, name of its output) that feeds a socket, through reroutes; None without a link."""
+    while socket.links and not socket.links[0].is_muted:
+        link = socket.links[0]
+        if link.from_node.type != "REROUTE":
+            return link.from_node, link.from_socket.name
+        socket = link.from_node.inputs[0]
+    return None
+
+
+def constant(socket):
+    """The number or color of a socket that is the same wherever light falls; raises Unread, which names the node."""
+    found = source_of(socket)
+    if not found:
+        return socket.default_value
+    node, _ = found
+    if node.type not in ("RGB", "VALUE") or node.mute:
+        raise Unread(node)
+    return node.outputs[0].default_value
+
+
+class Unread(Exception):
+    """A node that a light's numbers cannot hold."""
+
+
+# Powers of the distance by which the outputs of Light Falloff exceed 1 / distance^2.
+FALLOFFS = {"Quadratic": 0, "Linear": 1, "Constant": 2}
+
+
+def lamp_emission(data):
+    """(color, power of the distance, smooth) of a lamp's nodes, which multiply its own color and strength."""
+    if not data.use_nodes:
+        return [1.0, 1.0, 1.0], 0, 0.0
+    tree = data.node_tree
+    output = tree.get_output_node("CYCLES") or tree.get_output_node("ALL")
+    found = output and source_of(output.inputs["Surface"])
+    if not found:
+        return [0.0, 0.0, 0.0], 0, 0.0
+    node, power, smooth = found[0], 0, 0.0
+    if node.type != "EMISSION" or node.mute:
+        raise Unread(node)
+    strength, fed = node.inputs["Strength"], source_of(node.inputs["Strength"])
+    if fed and fed[0].type == "LIGHT_FALLOFF" and not fed[0].mute and data.type != "SUN":
+        power, smooth = FALLOFFS[fed[1]], constant(fed[0].inputs["Smooth"])
+        strength = fed[0].inputs["Strength"]
+    scale = constant(strength)
+    return [scale * value for value in list(constant(node.inputs["Color"]))[:3]], power, smooth
+
+
+def is_visible(instance, kind):
+    """Whether rays of a kind meet an instance, as Cycles has it."""
+    return all(getattr(thing, "visible_" + kind, True)
+               for thing in (instance.object.original, *((instance.parent.original,) if instance.is_instance else ())))
+
+
+def casts_shadow(data):
+    settings = getattr(data, "cycles", None)
+    return getattr(settings, "cast_shadow", getattr(data, "use_shadow", True))
 
 
 def lights(depsgraph):
@@ -501,16 +587,33 @@ def lights(depsgraph):
         if instance.object.type != "LIGHT":
             continue
         data = instance.object.original.data
+        # A portal has no light of its own, and light without diffuse rays reaches no skin.
+        if data.type == "AREA" and getattr(data.cycles, "is_portal", False) or not is_visible(instance, "diffuse"):
+            continue
         if data.type not in LIGHT_KINDS:
             say(f"left out: light {instance.object.name} of type {data.type}")
             continue
         yield instance.object.name, data, instance.matrix_world.copy()
 
 
-def light_record(data, matrix):
+def light_record(name, data, matrix, corners):
+    """The light of a manifest; None: a dark or a negative one."""
     # A sheet's radiant intensity ahead is a quarter of its power in Cycles.
     intensity = data.energy / {"SUN": 1, "AREA": 4}.get(data.type, 4 * math.pi)
-    record = {"type": LIGHT_KINDS[data.type], "color": list(data.color), "intensity": intensity}
+    try:
+        factors, power, smooth = lamp_emission(data)
+    except Unread as unread:
+        node, = unread.args
+        say(f"lamp {name}: node {node.name} ({node.bl_label}) is left out of what comes through, which has the lamp's own "
+            "color and strength; the irradiance has the node. Give Emission plain numbers, or Light Falloff")
+        factors, power, smooth = [1.0, 1.0, 1.0], 0, 0.0
+    color = [own * factor for own, factor in zip(data.color, factors)]
+    if intensity * min(color) < 0:
+        say(f"lamp {name}: its negative light is left out of what comes through; the irradiance has it")
+    color = [max(intensity * value, 0.0) for value in color]
+    if max(color) == 0:
+        return None
+    record = {"type": LIGHT_KINDS[data.type], "color": [value / max(color) for value in color], "intensity": max(color)}
     if data.type != "SUN":
         record["position"] = list(matrix.translation)
     if data.type != "POINT":
@@ -520,13 +623,23 @@ def light_record(data, matrix):
         record.update(outerConeAngle=outer, innerConeAngle=outer * (1 - max(data.spot_blend, 1e-3)))
     if data.type == "AREA":
         record["angleTable"] = COSINES
+    if power > 0 or smooth > 0:
+        reach = 1.1 * max((corner - matrix.translation).length for corner in corners)
+        distances = [reach * i / 63 for i in range(64)]
+        factors = [r ** power * (r * r / (smooth + r * r) if smooth > 0 else 1) for r in distances]
+        record.update(range=reach, distanceTable=[factor / max(factors) for factor in factors],
+                      intensity=record["intensity"] * max(factors))
     return record
 
 
-def say_what_size_does(name, data, matrix, corners):
-    """Light that comes through has the place of a light's center, whatever its size."""
-    near = [min(max(matrix.translation[i], min(c[i] for c in corners)), max(c[i] for c in corners)) for i in range(3)]
-    nearest = (Vector(near) - matrix.translation).length
+def distance_to(box, place):
+    near = [min(max(place[i], min(c[i] for c in box)), max(c[i] for c in box)) for i in range(3)]
+    return (Vector(near) - place).length
+
+
+def say_what_size_does(name, data, matrix, translucent):
+    """Light that comes through has the place of a light's center, whatever its size. translucent: boxes()."""
+    nearest = min(distance_to(box, matrix.translation) for box in translucent)
     if data.type == "SUN":
         angle = data.angle
     else:
@@ -572,6 +685,7 @@ def light_views(data, matrix, corners):
 @contextlib.contextmanager
 def changed(*changes):
     """While it lasts, attributes have other values: (object, name, value)."""
+    changes = [change for change in changes if hasattr(change[0], change[1])]  # versions of Blender differ
     before = [(thing, name, getattr(thing, name)) for thing, name, _ in changes]
     for thing, name, value in changes:
         setattr(thing, name, value)
@@ -599,12 +713,16 @@ def as_data(samples):
                  (scene.cycles, "samples", samples), (scene.cycles, "use_adaptive_sampling", False),
                  (scene.cycles, "use_denoising", False), (scene.cycles, "device", "CPU"), (scene.cycles, "seed", 0),
                  (scene.render, "use_motion_blur", False), (camera.dof, "use_dof", False),
+                 (scene.render, "use_multiview", False), (layer, "samples", 0), (layer, "use", True),
+                 *((other, "use", False) for other in scene.view_layers if other != layer),
+                 (scene.cycles, "sample_clamp_direct", 0.0), (scene.cycles, "sample_clamp_indirect", 0.0),
+                 (scene.cycles, "light_sampling_threshold", 0.0),
                  (scene.render, "use_crop_to_border", scene.render.use_border),
                  (scene.render, "use_compositing", False), (scene.render, "use_sequencer", False),
                  (scene.render, "use_overwrite", True), (scene.render, "use_file_extension", False),
                  (settings, "file_format", "OPEN_EXR_MULTILAYER"), (settings, "color_depth", "32"),
                  (settings, "exr_codec", "ZIP"), (layer, "use_pass_emit", True),
-                 (layer, "use_pass_z", True), (layer, "use_pass_diffuse_direct", True),
+                 (layer, "use_pass_z", True), (layer, "use_pass_diffuse_direct", True), (layer, "use_pass_diffuse_indirect", True),
                  (layer, "use_pass_diffuse_color", True), (layer, "use_pass_material_index", True),
                  (layer, "use_pass_combined", True)):
         yield
@@ -620,8 +738,24 @@ def back_faces(nodes, links):
     return made
 
 
-def read_exr(path, passes):
-    """Channels of an uncompressed EXR of 32-bit floats, by the ends of their names, and of all at most 2^18 pixels."""
+def hidden_faces(material):
+    """For surface_of: camera rays see the light that arrives from outside at the nearest back face; all others see the material."""
+    before = output_node(material).inputs["Surface"].links[0].from_socket
+
+    def make(nodes, links):
+        made = back_faces(nodes, links)
+        translucent, ray, mix = [nodes.new("ShaderNode" + n) for n in ("BsdfTranslucent", "LightPath", "MixShader")]
+        translucent.inputs["Color"].default_value = (1, 1, 1, 1)
+        links.new(translucent.outputs[0], made[-1].inputs[2])
+        links.new(ray.outputs["Is Camera Ray"], mix.inputs[0])
+        links.new(before, mix.inputs[1])
+        links.new(made[-1].outputs[0], mix.inputs[2])
+        return made + [translucent, ray, mix]
+    return make
+
+
+def read_exr(path, passes, most=None):
+    """Channels of an uncompressed EXR of 32-bit floats, by the ends of their names, and of at most so many pixels."""
     with open(path, "rb") as file:
         data = file.read()
     at, attributes = 8, {}
@@ -638,19 +772,84 @@ def read_exr(path, passes):
         rest = rest[16:]
     left, top, right, bottom = struct.unpack("<4i", attributes[b"dataWindow"])
     width, height = right - left + 1, bottom - top + 1
-    step = math.ceil(width * height / 2 ** 18)
-    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)
+    step = math.ceil(width * height / most) if most else 1
+    offsets = struct.unpack_from(f"<{height}Q", data, at + 1)[::step]
     result = []
-    for wanted in passes:
-        index = next(i for i, name in enumerate(names) if name == layer_channels(wanted)[0])
-        values = array.array("f")
-        for offset in offsets[::step]:
+    for name in layer_channels(*passes):
+        values, index = array.array("f"), names.index(name)
+        for offset in offsets:
             start = offset + 8 + 4 * width * index
             values.frombytes(data[start:start + 4 * width])
-        if sys.byteorder == "big":
-            values.byteswap()
-        result.append(values)
+        result.append(little_endian(values))
     return result
+
+
+def little_endian(values):
+    if sys.byteorder == "big":
+        values.byteswap()
+    return values
+
+
+def write_exr(path, channels):
+    """Writes {name: numbers} of the picture's size as an uncompressed EXR of 32-bit floats."""
+    names = sorted(channels)  # as the format wants them
+    (_, _, width, height), _ = window(bpy.context.scene.render)
+    listed = b"".join(name.encode() + struct.pack("<x4i", 2, 0, 1, 1) for name in names) + b"\0"
+    whole = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = struct.pack("<2i", 20000630, 2)
+    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", b"\0"), ("dataWindow", "box2i", whole),
+                              ("displayWindow", "box2i", whole), ("lineOrder", "lineOrder", b"\0"),
+                              ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                              ("screenWindowCenter", "v2f", bytes(8)), ("screenWindowWidth", "float", struct.pack("<f", 1))):
+        head += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    size = 4 * width * len(names)
+    first = len(head) + 1 + 8 * height
+    with open(path, "wb") as file:
+        file.write(head + b"\0" + struct.pack(f"<{height}Q", *(first + row * (8 + size) for row in range(height))))
+        for row in range(height):
+            cut = slice(row * width, (row + 1) * width)
+            file.write(struct.pack("<2i", row, size) + b"".join(little_endian(channels[n][cut]).tobytes() for n in names))
+
+
+# Of the light that diffuse surfaces reflect over their color: E / pi.
+LIGHT_PASSES = tuple(f"{name}.{channel}" for name in ("DiffDir", "DiffInd") for channel in "RGB")
+
+
+def each(operation, *images):
+    """An image of the same channels, each of whose numbers an operation makes of those in its place."""
+    return [array.array("f", map(operation, *channels)) for channels in zip(*images)]
+
+
+def light_of(path):
+    """Direct and indirect diffuse light of an uncompressed render: R, G, B."""
+    channels = read_exr(path, LIGHT_PASSES)
+    return each(operator.add, channels[:3], channels[3:])
+
+
+def standard_error(*values):
+    mean = sum(values) / len(values)
+    return math.sqrt(sum((value - mean) ** 2 for value in values) / (len(values) - 1) / len(values)) if len(values) > 1 else 0.0
+
+
+def averaged(scratch, samples, pictures):
+    """Diffuse light of several renders that share the samples, and the standard error of their mean."""
+    scene, found = bpy.context.scene, []
+    path = os.path.join(scratch, "light.exr")
+    pictures = max(min(pictures, samples), 1)
+    for seed in range(pictures):
+        with changed((scene.cycles, "samples", max(samples // pictures, 1)), (scene.cycles, "seed", seed),
+                     (scene.render.image_settings, "exr_codec", "NONE")):
+            render(path)
+        found.append(light_of(path))
+    return each(lambda *values: sum(values) / pictures, *found), each(standard_error, *found)
+
+
+def save_color(path, rgb, **more):
+    """Writes R, G, B, and others under names."""
+    channels = dict(zip("RGB", rgb))
+    for layer, image in more.items():
+        channels.update({f"{layer}.{name}": numbers for name, numbers in zip("RGB", image)})
+    write_exr(path, channels)
 
 
 def window(render_settings):
@@ -682,9 +881,39 @@ def layer_channels(*passes):
     return [f"{name}.{channel}" for channel in passes]
 
 
+def casting(depsgraph, materials, opaque_too):
+    """Changes by which a camera sees what casts shadows, whatever a camera sees of it else."""
+    names, changes = {material.name for material in materials}, {}
+    for instance in rendered_instances(depsgraph):
+        thing = instance.object.original
+        casts = thing.visible_shadow and (opaque_too or any(s.material and s.material.name in names for s in thing.material_slots))
+        for shown in (thing, instance.parent.original) if instance.is_instance else (thing,):
+            changes[shown.name] = (shown, "visible_camera", casts and shown.visible_shadow)
+    return list(changes.values())
+
+
+def in_collections(layer_collection, name, value):
+    """Changes of a property of all collections of a view layer."""
+    for child in layer_collection.children:
+        yield (child, name, value)
+        yield from in_collections(child, name, value)
+
+
+def without_holdouts(depsgraph):
+    """Changes by which the camera sees holdouts and shadow catchers as the objects that they are."""
+    things = {i.object.original.name: i.object.original for i in rendered_instances(depsgraph)}
+    yield from in_collections(bpy.context.view_layer.layer_collection, "holdout", False)
+    for thing in things.values():
+        yield from ((thing, "is_holdout", False), (thing, "is_shadow_catcher", False))
+
+
 def render_maps(name, data, matrix, corners, size, folder, stem, materials, material_map):
     """The shadow maps of one light: depths that a camera in its place sees, what casts, and where light leaves that again."""
-    scene = bpy.context.scene
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    shown = casting(bpy.context.evaluated_depsgraph_get(), materials, casts_shadow(data))
+    shown += in_collections(layer.layer_collection, "indirect_only", False)
+    if not casts_shadow(data):
+        say(f"lamp {data.name} casts no shadow: opaque bodies are not in its map, and translucent ones still shadow each other")
     camera_data = bpy.data.cameras.new("pellucid light")
     camera = bpy.data.objects.new("pellucid light", camera_data)
     scene.collection.objects.link(camera)
@@ -703,7 +932,7 @@ def render_maps(name, data, matrix, corners, size, folder, stem, materials, mate
             else:
                 camera_data.type, camera_data.angle = "PERSP", extent["angle"]
             file = f"{stem}.{name}.{index}.exr" if index or data.type == "POINT" else f"{stem}.{name}.exr"
-            with changed((scene, "camera", camera), (scene.render, "resolution_x", size),
+            with changed(*shown, (scene, "camera", camera), (scene.render, "resolution_x", size),
                          (scene.render, "resolution_y", size), (scene.render, "resolution_percentage", 100),
                          (scene.render, "use_border", False), (scene.render, "pixel_aspect_x", 1.0),
                          (scene.render, "pixel_aspect_y", 1.0), (scene.cycles, "samples", 1)):
@@ -741,27 +970,230 @@ def number_layers(lights_of_manifest):
                 layers += 1
 
 
-def capture(folder, stem, options):
-    """Renders the current frame and writes its manifest."""
-    scene, layer = bpy.context.scene, bpy.context.view_layer
+# Renders that share a picture's samples: their differences are its noise.
+PICTURES = 4
+
+
+def choose_layer():
+    """The view layer in use: the window's, or the first that is on for rendering."""
+    layers = [layer for layer in bpy.context.scene.view_layers if layer.use]
+    if not layers:
+        raise Refused("no view layer is on for rendering: turn on View Layer > Use for Rendering")
+    if bpy.context.view_layer.use:
+        layers.remove(bpy.context.view_layer)
+    else:
+        if not bpy.context.window:
+            raise Refused(f"view layer {bpy.context.view_layer.name} is off for rendering: turn on Use for Rendering")
+        bpy.context.window.view_layer = layers.pop(0)
+    if layers:
+        say(f"view layer {bpy.context.view_layer.name} is captured, and these are left out: " +
+            ", ".join(layer.name for layer in layers))
+
+
+def check_camera(scene):
     if not scene.camera:
         raise Refused("the scene has no camera")
+    if scene.camera.type != "CAMERA":
+        raise Refused(f"{scene.camera.name}, the scene's camera, is a {scene.camera.type}: choose an object of type Camera")
+    if scene.camera.data.type == "PANO":
+        raise Refused(f"camera {scene.camera.name} is panoramic, which no matrix is: set its Type to Perspective or Orthographic")
+
+
+def camera_record(depsgraph):
+    """Both matrices. A mirrored camera's view is that of its image, which the projection mirrors."""
+    camera = bpy.context.scene.camera.evaluated_get(depsgraph)
+    world, clip = camera.matrix_world.normalized(), projection(depsgraph, camera)
+    if world.determinant() < 0:
+        mirror = Matrix.Diagonal((-1, 1, 1, 1))
+        world, clip = world @ mirror, clip @ mirror
+    return {"clipFromView": column_major(clip), "viewFromWorld": column_major(rigid_inverse(world))}
+
+
+# Of each kind of data in use, properties that a capture follows, here or as Cycles renders its passes; that change neither
+# light nor shape in Cycles; and that are left out, with a sentence. A last * stands for any ending. Any other property of
+# other than its default value is named.
+PROPERTIES = {
+    "lamp": {
+        "used": "type color energy angle spot_size spot_blend shape size size_y spread shadow_soft_size use_nodes "
+                "cycles.cast_shadow cycles.is_portal cycles.use_multiple_importance_sampling",
+        "without effect": "distance *_factor use_custom_distance cutoff_distance falloff_type *_attenuation *_coefficient "
+                          "use_shadow shadow_* use_contact_shadow contact_shadow_* use_square show_cone cycles.is_caustics_light",
+        "left out": {"cycles.max_bounces": "its limit of bounces holds for the irradiance alone"}},
+    "camera": {
+        "used": "type sensor_fit angle* lens lens_unit clip_* sensor_* ortho_scale shift_*",
+        "without effect": "passepartout_alpha display_size show_* cycles.* dof.focus_* dof.aperture_* stereo.*",
+        "left out": {"dof.use_dof": "its depth of field is left out: blur the picture in a compositor"}},
+    "object": {
+        "used": "parent* track_axis up_axis location rotation_* scale dimensions delta_* matrix_* use_camera_lock_parent hide_render "
+                "show_instancer_for_render instance_* use_instance_* visible_camera visible_diffuse visible_shadow active_* "
+                "add_rest_position_attribute show_only_shape_key cycles.use_adaptive_subdivision cycles.dicing_rate "
+                "cycles.shadow_terminator_*",
+        "without effect": "lock_* empty_* use_empty_* show_* pass_index color hide_* visible_glossy visible_transmission "
+                          "visible_volume_scatter display_* use_shape_key_edit_mode use_mesh_mirror_* lightgroup "
+                          "use_grease_pencil_lights cycles.use_motion_blur cycles.use_deform_motion cycles.motion_steps "
+                          "cycles.is_caustics_* cycles.ao_distance",
+        "left out": {"is_holdout": "it is a holdout, which a capture draws as what it is",
+                     "is_shadow_catcher": "it is a shadow catcher, which a capture draws as what it is",
+                     "cycles.use_camera_cull": "shadow maps cull it from the lamp's place, too",
+                     "cycles.use_distance_cull": "shadow maps cull it from the lamp's place, too"}},
+    "material": {
+        "used": "use_nodes pass_index cycles.displacement_method cycles.sample_as_light",
+        "without effect": "blend_method shadow_method alpha_threshold show_transparent_back use_* refraction_depth preview_* "
+                          "paint_* diffuse_color specular_* roughness metallic line_* cycles.volume_* cycles.homogeneous_volume",
+        "left out": {"cycles.use_transparent_shadow": "its holes are holes in shadow maps, too"}},
+    "render": {
+        "used": "resolution_* pixel_aspect_* use_border border_* use_crop_to_border hair_* use_simplify simplify_* engine",
+        "without effect": "preview_* fps* frame_map_* dither_intensity filter_* film_transparent threads* use_high_quality_normals "
+                          "use_placeholder use_overwrite use_file_extension use_lock_interface filepath use_render_cache bake_* "
+                          "use_bake_* use_stamp* stamp_* metadata_input sequencer_* use_sequencer* use_single_layer views_format "
+                          "use_persistent_data line_thickness* motion_blur_* use_compositing compositor_*",
+        "left out": {"use_motion_blur": "motion blur is left out: the frame stands still",
+                     "use_multiview": "stereoscopy is left out: the picture is that of the middle camera",
+                     "use_freestyle": "Freestyle's lines are left out"}},
+}
+NESTED = ("cycles", "dof", "stereo", "light_linking")
+
+
+def is_listed(name, patterns):
+    return any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)
+
+
+def is_default(thing, known):
+    value = getattr(thing, known.identifier)
+    if getattr(known, "is_array", False):
+        return all(abs(a - b) < 1e-5 for row in value for a, b in zip(row if hasattr(row, "__len__") else [row], known.default_array))
+    default = known.default_flag if getattr(known, "is_enum_flag", False) else known.default
+    return abs(value - default) <= 1e-5 * max(abs(default), 1) if known.type == "FLOAT" else value == default
+
+
+def unusual(thing, prefix=""):
+    """Names and values of properties that are not at their defaults. A pointer counts only within NESTED."""
+    for known in thing.bl_rna.properties:
+        name = known.identifier
+        if known.type == "POINTER":
+            if name in NESTED and not prefix and getattr(thing, name):
+                yield from unusual(getattr(thing, name), name + ".")
+            elif prefix == "light_linking." and getattr(thing, name):
+                yield prefix + name, getattr(thing, name).name
+        elif known.type not in ("COLLECTION", "STRING") and not known.is_readonly and not is_default(thing, known):
+            yield prefix + name, getattr(thing, name)
+
+
+# Of every data-block: bookkeeping.
+BOOKKEEPING = ("use_fake_user", "use_extra_user", "tag", "is_*")
+
+
+def say_unusual(kind, name, thing):
+    table = PROPERTIES[kind]
+    known = " ".join((table["used"], table["without effect"])).split()
+    for key, value in unusual(thing):
+        if key in table["left out"]:
+            say(f"{kind} {name}: {table['left out'][key]} ({key})")
+        elif not is_listed(key, known) and not is_listed(key, BOOKKEEPING):
+            say(f"{kind} {name}: its {key} is {value}, which no capture holds: set the default, or expect another picture")
+
+
+def say_what_is_left_out(depsgraph):
+    """Sentences for what is in use and not in the capture."""
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    if layer.material_override:
+        raise Refused(f"view layer {layer.name} has the Material Override {layer.material_override.name}: clear it")
+    say_unusual("render", "settings", scene.render)
+    say_unusual("camera", scene.camera.name, scene.camera.data)
+    if scene.use_nodes and scene.render.use_compositing:
+        say("compositing nodes are left out: composite the replay's picture")
+    for instance in rendered_instances(depsgraph):
+        thing = instance.object.original
+        if thing.type == "LIGHT":  # the properties of its object are those of meshes
+            say_unusual("lamp", thing.name, thing.data)
+            continue
+        say_unusual("object", thing.name, thing)
+        for slot in thing.material_slots:
+            if slot.material:
+                say_unusual("material", slot.material.name, slot.material)
+
+
+def may_emit(tree, node):
+    """Whether a shader of a surface gives light of its own."""
+    strength = first_input(node, "Strength" if node.type == "EMISSION" else "Emission Strength")
+    color = first_input(node, "Color" if node.type == "EMISSION" else "Emission", "Emission Color")
+    if node.type not in ("EMISSION", "BSDF_PRINCIPLED") or not color:
+        return False
+    return all(source_of(socket) or (max(socket.default_value[:3]) if hasattr(socket.default_value, "__len__")
+                                     else socket.default_value) != 0 for socket in (strength, color) if socket)
+
+
+def emitters(depsgraph):
+    """Whether meshes emit light, each of which a sentence names."""
+    names = {}
+    for instance in rendered_instances(depsgraph):
+        for slot in instance.object.original.material_slots:
+            if slot.material and any(may_emit(*found) for found in shaders(slot.material)):
+                names[instance.object.original.name] = slot.material.name
+    for thing, material in names.items():
+        say(f"object {thing} emits light (material {material}): it comes through by the irradiance of hidden faces, which "
+            "knows no exit points; a lamp in its place has shadow maps")
+    return bool(names)
+
+
+def hidden_light(materials, glowing, scratch):
+    """Light on the faces that translucent ones hide, without that of lamps, which comes through by their shadow maps."""
+    scene, path = bpy.context.scene, os.path.join(scratch, "hidden.exr")
+    lamps = [(thing, "hide_render", True) for thing in scene.objects if thing.type == "LIGHT"]
+    with contextlib.ExitStack() as stack:
+        for material in materials:
+            stack.enter_context(surface_of(material, hidden_faces(material)))
+        stack.enter_context(changed((scene.render.image_settings, "exr_codec", "NONE"),
+                                    (scene.cycles, "transparent_max_bounces", 64)))
+        render(path)
+        light = read_exr(path, LIGHT_PASSES[3:])
+        if glowing or scene.world:
+            with changed(*lamps):
+                render(path)
+            light = each(operator.add, light, read_exr(path, LIGHT_PASSES[:3]))
+    return light
+
+
+def say_noise(light, error, samples):
+    mean = sum(map(math.fsum, light)) / sum(map(len, light))
+    noise = 100 * math.sqrt(sum(e * e for channel in error for e in channel) / sum(map(len, error))) / mean if mean > 0 else 0
+    if noise > 1:
+        say(f"irradiance of {samples} samples has a noise of {noise:.2g} % of its mean; --samples {4 * samples} halves it")
+
+
+def truth(folder, stem, samples, scratch):
+    """The manifest's truth: diffuse light with bounces, of the file's own materials, and its standard error."""
+    light, error = averaged(scratch, samples, PICTURES)
+    color = read_exr(os.path.join(scratch, "light.exr"), ("DiffCol.R", "DiffCol.G", "DiffCol.B"))
+    file = f"{stem}.truth.exr"
+    save_color(os.path.join(folder, file), light, color=color, error=each(lambda e, c: math.pi * e * c, error, color))
+    named = {layer: {"file": file, "channels": [f"{layer}.{name}" for name in "RGB"]} for layer in ("color", "error")}
+    return {"file": file, "channels": ["R", "G", "B"], "scale": math.pi, "times": named["color"], "standardError": named["error"]}
+
+
+def capture(folder, stem, options):
+    """Renders the current frame and writes its manifest."""
+    choose_layer()
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    check_camera(scene)
     os.makedirs(folder, exist_ok=True)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     candidates = scattering_materials(depsgraph)
     if not candidates:
         raise Refused("no rendered material has subsurface scattering: raise Principled's Subsurface")
     corners = bounds(depsgraph)
+    glowing = emitters(depsgraph)
+    say_what_is_left_out(depsgraph)
     unit = scene.unit_settings.scale_length
     file, back = f"{stem}.exr", f"{stem}.back.exr"
     manifest = {"pellucid": 1, "metersPerUnit": unit}
     index_of = {material.name: i + 1 for i, material in enumerate(candidates)}
     every = [(m, "pass_index", index_of.get(m.name, 0)) for m in bpy.data.materials]
     with contextlib.ExitStack() as stack:
+        scratch = stack.enter_context(tempfile.TemporaryDirectory())
         stack.enter_context(as_data(options.samples))
-        stack.enter_context(changed(*every))
-        with tempfile.TemporaryDirectory() as scratch:
-            seen = measured(candidates, scratch)
+        stack.enter_context(changed(*every, *without_holdouts(depsgraph)))
+        seen = measured(candidates, scratch)
         # Materials of one medium have one number, so that light crosses their border.
         media, material_map = [], {"0": 0}
         for material in candidates:
@@ -784,13 +1216,7 @@ def capture(folder, stem, options):
         walked = {key: [part * factor for part, factor in zip(parts[key], off[key])] for key in parts}
         reflected = {key: [more + 1 - part for more, part in zip(walked[key], parts[key])] for key in parts}
         if options.truth:
-            with changed((scene.cycles, "samples", options.truth), (scene.cycles, "diffuse_bounces", 0),
-                         (scene.cycles, "max_bounces", 0)):
-                render(os.path.join(folder, f"{stem}.truth.exr"))
-            manifest["truth"] = {"file": f"{stem}.truth.exr", "scale": math.pi,
-                                 "channels": layer_channels("DiffDir.R", "DiffDir.G", "DiffDir.B"),
-                                 "times": {"file": f"{stem}.truth.exr",
-                                           "channels": layer_channels("DiffCol.R", "DiffCol.G", "DiffCol.B")}}
+            manifest["truth"] = truth(folder, stem, options.truth, scratch)
         found = every_shader(materials)
         mixed = [m for m in materials if min(parts[index_of[m.name]]) < 0.999]
         for material in mixed:
@@ -813,16 +1239,23 @@ def capture(folder, stem, options):
         color = colored(f"{stem}.color.exr", reflected) if mixed and not fitted else None
         stack.enter_context(in_place_of(
             found, lambda beside: beside.diffuse() if beside.node.type in DIFFUSE_SHADERS else None))
-        render(os.path.join(folder, file))
+        with changed((scene.cycles, "max_bounces", 0)):
+            render(os.path.join(folder, file))
+        light, error = averaged(scratch, options.samples, PICTURES)
+        save_color(os.path.join(folder, f"{stem}.light.exr"), light)
+        say_noise(light, error, options.samples)
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        camera = scene.camera.evaluated_get(depsgraph)
-        manifest["camera"] = {"clipFromView": column_major(projection(depsgraph, camera)),
-                              "viewFromWorld": column_major(rigid_inverse(camera.matrix_world))}
+        manifest["camera"] = camera_record(depsgraph)
+        save_color(os.path.join(folder, f"{stem}.hidden.exr"), hidden_light(materials, glowing, scratch))
+        depsgraph = bpy.context.evaluated_depsgraph_get()
         manifest["lights"] = []
+        translucent = boxes(depsgraph, {m.name for m in materials})
         # All of them first: renders change the depsgraph.
         for i, (name, data, matrix) in enumerate(list(lights(depsgraph))):
-            record = light_record(data, matrix)
-            say_what_size_does(name, data, matrix, corners)
+            record = light_record(name, data, matrix, corners)
+            if not record:
+                continue
+            say_what_size_does(name, data, matrix, translucent)
             maps = render_maps(f"light{i}_{safe(name)}", data, matrix, corners, options.shadow_size, folder, stem, materials,
                                material_map)
             if maps:
@@ -842,8 +1275,8 @@ def capture(folder, stem, options):
     manifest["buffers"] = {
         "frontDepth": {"file": file, "channel": depth, "encoding": "viewZ"},
         "backDepth": {"file": back, "channel": depth, "encoding": "viewZ"},
-        "irradiance": {"file": file, "channels": layer_channels("DiffDir.R", "DiffDir.G", "DiffDir.B"),
-                       "scale": math.pi},
+        "irradiance": {"file": f"{stem}.light.exr", "channels": ["R", "G", "B"], "scale": math.pi},
+        "hiddenIrradiance": {"file": f"{stem}.hidden.exr", "channels": ["R", "G", "B"], "scale": math.pi},
         "albedo": albedo or color,
         "material": {"file": file, "channel": layer_channels("IndexMA.X")[0], "map": material_map}}
     if mixed:
@@ -868,10 +1301,11 @@ class PELLUCID_OT_capture(bpy.types.Operator):
 
     def execute(self, context):
         words = context.scene.pellucid
+        SAID.clear()
         options = argparse.Namespace(shadow_size=words.shadow_size, samples=words.samples, truth=words.truth)
         try:
             path = capture(bpy.path.abspath(words.folder), "capture", options)
-        except Refused as refusal:
+        except (Refused, RuntimeError) as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
         self.report({"INFO"}, f"wrote {path}; next: pellucid replay {path} -o out.exr --png")
@@ -881,7 +1315,7 @@ class PELLUCID_OT_capture(bpy.types.Operator):
 class PellucidWords(bpy.types.PropertyGroup):
     folder: bpy.props.StringProperty(name="Folder", subtype="DIR_PATH", default="//pellucid/")
     shadow_size: bpy.props.IntProperty(name="Shadow map", description="Texels across", default=1024, min=1, max=8192)
-    samples: bpy.props.IntProperty(name="Samples", description="For lamps that have a size", default=16, min=1)
+    samples: bpy.props.IntProperty(name="Samples", description="For soft and bounced light", default=16, min=1)
     truth: bpy.props.IntProperty(name="Truth", description="Samples of a random walk; 0: none", default=0, min=0)
 
 
@@ -929,7 +1363,7 @@ def main(arguments):
     parser.add_argument("--frames", help="FIRST-LAST or a list like 1-10,20 (default: the current frame)")
     parser.add_argument("--replay", metavar="PELLUCID", help="the command that also makes the pictures")
     parser.add_argument("--shadow-size", type=int, default=1024, help="texels across a shadow map")
-    parser.add_argument("--samples", type=int, default=16, help="a pixel, for the light of lamps that have a size")
+    parser.add_argument("--samples", type=int, default=16, help="a pixel, for soft and bounced light")
     parser.add_argument("--truth", type=int, default=0, help="samples of a random walk to compare with")
     options = parser.parse_args(arguments)
     scene = bpy.context.scene
@@ -941,6 +1375,11 @@ def main(arguments):
             last = capture(options.output, "capture" if frame is None else f"capture.{frame:04d}", options)
         except Refused as refusal:
             raise SystemExit(f"pellucid: {refusal}") from None
+        except Exception as error:  # Blender itself ends with status 0
+            at = error.__traceback__
+            while at.tb_next and at.tb_next.tb_frame.f_code.co_filename == at.tb_frame.f_code.co_filename:
+                at = at.tb_next
+            raise SystemExit(f"pellucid: {type(error).__name__} at line {at.tb_lineno} of blender_capture.py: {error}") from None
     number = "" if frames == [None] else ".####"
     pattern = os.path.join(options.output, f"capture{number}.json")
     print(f"pellucid: wrote {last}")

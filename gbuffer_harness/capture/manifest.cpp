@@ -16,6 +16,7 @@
 #include "capture/manifest_parts.h"
 #include "common/bounds.h"
 #include "common/error.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
@@ -115,18 +116,25 @@ static_assert(PELLUCID_DEPTH_DEVICE == 0 && PELLUCID_DEPTH_VIEW_Z == 1 && PELLUC
               PELLUCID_DEPTH_THICKNESS == 3);
 static_assert(PELLUCID_LIGHT_DIRECTIONAL == 0 && PELLUCID_LIGHT_POINT == 1 && PELLUCID_LIGHT_SPOT == 2);
 
+// Nothing: neither a whole number that a float holds nor "*".
+std::optional<int> storedValueOf(const std::string& key) {
+  if (key == "*") return kOtherValues;
+  const std::optional<int> value = numberIn<int>(key);
+  return value && *value >= -kMaxStoredMaterial && *value <= kMaxStoredMaterial ? value : std::nullopt;
+}
+
 MaterialMap readMaterialMap(const Field& field, int materialCount) {
   MaterialMap map;
   for (const auto& [key, value] : field.members()) {
-    const bool digits =
-        !key.empty() && key.size() <= 8 && key.find_first_not_of("0123456789") == std::string::npos;
-    if (!digits || std::stoi(key) > kMaxStoredMaterial)
-      value.fail("the key must be a whole number from 0 to " + std::to_string(kMaxStoredMaterial));
+    const std::optional<int> stored = storedValueOf(key);
+    if (!stored)
+      value.fail("the key must be a whole number of at most " + std::to_string(kMaxStoredMaterial) +
+                 " and either sign, or \"*\" for all other values");
     const int index = value.integer(0, kMaxMaterials);
     if (index > materialCount)
       value.fail("material " + std::to_string(index) + ", but there are " + std::to_string(materialCount) +
                  " materials");
-    if (!map.emplace(std::stoi(key), index).second) value.fail("the same stored value stands twice");
+    if (!map.emplace(*stored, index).second) value.fail("the same stored value stands twice");
   }
   if (map.empty()) field.fail("must not be empty");
   return map;

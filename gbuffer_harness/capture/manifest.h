@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,12 +30,14 @@ struct BufferSource {
 };
 
 // Stored material values are read as floats: these are the integers that a float counts without gaps.
-inline constexpr int kMaxStoredMaterial = 1 << 24;
+inline constexpr int kMaxStoredMaterial = 1 << 24;  // of either sign
 
 // String attribute of an EXR that embeds its manifest.
 inline constexpr const char* kManifestAttribute = "pellucid.manifest";
 
 using MaterialMap = std::map<int, int>;  // stored value -> material index; empty: the value is the index
+// Key of every value that the map does not name, whole or not: "*" in a manifest.
+inline constexpr int kOtherValues = std::numeric_limits<int>::min();
 
 // Where a shadow map and what lies beside it come from.
 struct ShadowSources {

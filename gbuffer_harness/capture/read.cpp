@@ -155,15 +155,20 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Buffer
                      sentence.str());
   };
   std::vector<std::uint8_t> indices(stored.pixels());
+  const auto others = map.find(kOtherValues);
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (stored.data[i] == kOutside) continue;
     const float value = std::round(stored.data[i]);
-    if (!(value >= 0 && value <= kMaxStoredMaterial)) fail(i, ", which is no material");
-    int index = static_cast<int>(value);
-    if (const auto mapped = map.find(index); mapped != map.end())
+    const bool isWhole = std::abs(value) <= kMaxStoredMaterial;
+    int index = isWhole ? static_cast<int>(value) : -1;
+    if (const auto mapped = map.find(index); isWhole && mapped != map.end())
       index = mapped->second;
+    else if (others != map.end())
+      index = others->second;
+    else if (index < 0)
+      fail(i, ", which is no material; \"map\": {\"*\": 0} makes what it does not name opaque");
     else if (!map.empty() && index != 0)
-      fail(i, ", which \"map\" does not name");
+      fail(i, ", which \"map\" does not name; \"*\": 0 in it makes such values opaque");
     if (static_cast<std::size_t>(index) > count)
       fail(i, ", but there are " + std::to_string(count) + " materials");
     indices[i] = static_cast<std::uint8_t>(index);

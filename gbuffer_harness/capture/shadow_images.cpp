@@ -28,7 +28,8 @@ void extend(ShadowImageSource& source, const ShadowMap& map) {
 }  // namespace
 
 Image ShadowImageSource::layer(int index) const {
-  Image image(width, height, 1, 0.5f);
+  // Tiles without a map: a depth in the middle, which a wrong tile would show, and numbers of no material.
+  Image image(width, height, 1, content == ShadowContent::Caster ? 0.0f : 0.5f);
   for (const ShadowMap* map : maps) {
     if (map->layer != index) continue;
     for (int y = 0; y < map->depth.image.height; ++y)

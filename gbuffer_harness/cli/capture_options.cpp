@@ -104,7 +104,9 @@ void addCommonOptions(const Command& command, CaptureOptions& options) {
   command.option(
       "--material", options.presets,
       "of a scene: *=PRESET or *={a manifest's material}, for all objects; of a model, repeatable: "
-      "NAME=PRESET, NAME={...} or NAME=thin:R,G,B, a thin wall's transmittance; NAME * means all others");
+      "NAME=PRESET, NAME={...}, NAME=thin:R,G,B (a thin wall's transmittance), NAME=opaque or NAME=none, "
+      "which "
+      "leaves it out; NAME * means all others");
   command.option(
       "--light", options.lights,
       std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax);
@@ -116,6 +118,8 @@ void addModelOptions(const Command& command, CaptureOptions& options, SceneUse u
   command.option("model", options.model, "glTF file, .glb or .gltf");
   models.option("--unit", options.unit, "mm, cm, m or a number of meters: the length of the file's unit");
   models.flag("--fill-holes", options.fillHoles, "close the holes of bodies that have a material");
+  models.option("--scene", options.gltf.scene,
+                "name or number of one of the file's scenes (default: the file's)");
   models.option("--camera", options.gltf.camera, "name of one of the file's cameras, or auto");
   models.option("--view", options.view, "X,Y,Z: direction from the center to the auto camera");
   models.option("--fov", options.verticalFov, "vertical field of view of the auto camera, degrees")
@@ -381,6 +385,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
   if (!lights.empty()) result.model.lights.clear();
   for (const std::string& light : lights)
     result.model.lights.push_back(parseLight(light, result.model, result.camera));
+  for (std::string& sentence : openLamps(result.model)) result.warnings.push_back(std::move(sentence));
   return result;
 }
 

@@ -12,32 +12,14 @@
 
 #include "common/error.h"
 #include "common/parse.h"
+#include "gltf/fields.h"
+#include "gltf/meshopt.h"
 
 namespace pellucid::harness {
 
 namespace {
 
 constexpr std::size_t kMaxDepth = 100;  // tinygltf reads extensions and extras recursively
-
-// Read, and drawn as the extension says.
-const std::set<std::string> kRead = {
-    "KHR_lights_punctual",
-    "KHR_materials_diffuse_transmission",
-    "KHR_materials_ior",
-    "KHR_materials_transmission",
-    "KHR_materials_volume",
-    "KHR_materials_volume_scatter",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-};
-
-// Neither change the triangles nor the diffuse color of a still.
-const std::set<std::string> kHarmless = {
-    "EXT_lights_image_based",    "KHR_animation_pointer",    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",   "KHR_materials_dispersion", "KHR_materials_emissive_strength",
-    "KHR_materials_iridescence", "KHR_materials_sheen",      "KHR_materials_specular",
-    "KHR_materials_unlit",       "KHR_materials_variants",   "KHR_xmp_json_ld",
-};
 
 struct Type {
   const char* name;
@@ -182,14 +164,6 @@ void checkNesting(const std::string& file, std::string_view json) {
   }
 }
 
-void checkRequired(const std::string& file, const GltfJson& json) {
-  const auto required = json.find("extensionsRequired");
-  if (required == json.end() || !required->is_array()) return;
-  for (const GltfJson& name : *required)
-    if (name.is_string() && !kRead.count(name) && !kHarmless.count(name))
-      throw InputError(file, "extensionsRequired", "\"" + name.get<std::string>() + "\" is not supported");
-}
-
 // Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
 // extensions that are required and not known, and properties that are missing or of another type.
 GltfJson parseGltfJson(const std::string& file, std::string_view text) {
@@ -201,7 +175,7 @@ GltfJson parseGltfJson(const std::string& file, std::string_view text) {
     throw InputError(file, "", std::string("its JSON cannot be parsed: ") + e.what());
   }
   if (!json.is_object()) throw InputError(file, "", "its JSON is not an object");
-  checkRequired(file, json);
+  checkRequiredExtensions(file, json);
   for (const Rule& rule : kRules) apply(file, rule, json, rule.path, "");
   return json;
 }
@@ -212,6 +186,7 @@ GltfJson forTinyGltf(const GltfJson& json) {
   GltfJson result = json;
   result.erase("animations");
   result.erase("skins");
+  pointToCompressed(result);
   return result;
 }
 
@@ -381,6 +356,7 @@ void checkBuffers(const GltfDocument& document, Session& session, std::size_t bi
   if (buffers == document.json.end()) return;
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     const GltfJson& buffer = (*buffers)[i];
+    if (isMeshoptFallback(buffer)) continue;
     const std::string field = "buffers[" + std::to_string(i) + "].";
     const std::size_t claimed = buffer["byteLength"];
     const std::string uri = buffer.value("uri", "");
@@ -414,8 +390,6 @@ const GltfJson* extensionOf(const GltfJson& value, const char* name) {
   const auto found = extensions->find(name);
   return found != extensions->end() && found->is_object() ? &*found : nullptr;
 }
-
-bool isDrawn(const std::string& extension) { return kRead.count(extension) != 0; }
 
 void GltfDocument::fail(const std::string& field, const std::string& sentence) const {
   throw InputError(file, field, sentence);
@@ -485,6 +459,7 @@ GltfDocument readGltf(const fs::path& path) {
     document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
   document.images = std::move(session.images);
   document.images.resize(document.model.images.size());
+  decodeMeshopt(document);
   return document;
 }
 

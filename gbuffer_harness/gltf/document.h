@@ -13,9 +13,6 @@ namespace pellucid::harness {
 
 using GltfJson = nlohmann::json;
 
-// True if files that use the extension are drawn as the extension asks.
-bool isDrawn(const std::string& extension);
-
 // The extension of that name; NULL: `value` does not have it as an object.
 const GltfJson* extensionOf(const GltfJson& value, const char* name);
 

@@ -18,6 +18,7 @@
 #include "common/error.h"
 #include "common/far_origin.h"
 #include "gltf/document.h"
+#include "gltf/fields.h"
 #include "gltf/material.h"
 #include "gltf/mesh.h"
 #include "gltf/pose.h"
@@ -79,42 +80,75 @@ std::string originNote(const Model& model) {
   return text;
 }
 
+std::string sceneName(const GltfDocument& document, std::size_t scene) {
+  const std::string& name = document.model.scenes[scene].name;
+  return std::to_string(scene) + (name.empty() ? "" : " \"" + name + "\"");
+}
+
+// The scene of that name or number; of an empty one the file's default scene, which a sentence names if there
+// are several.
+std::size_t chooseScene(const GltfDocument& document, const std::string& wanted,
+                        std::vector<std::string>& warnings) {
+  const auto& scenes = document.model.scenes;
+  if (scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
+  std::string list;
+  for (std::size_t i = 0; i < scenes.size(); ++i) list += (i ? ", " : "") + sceneName(document, i);
+  if (wanted.empty()) {
+    const std::size_t chosen =
+        document.model.defaultScene < 0
+            ? 0
+            : document.index(document.model.defaultScene, scenes.size(), "scene", "scenes");
+    if (scenes.size() > 1)
+      warnings.push_back("scene " + sceneName(document, chosen) + " is drawn; --scene chooses among " + list);
+    return chosen;
+  }
+  for (std::size_t i = 0; i < scenes.size(); ++i)
+    if (scenes[i].name == wanted || std::to_string(i) == wanted) return i;
+  document.fail("scenes", "none is \"" + wanted + "\"; there are " + list);
+}
+
 struct PlacedNode {
   std::size_t node;
   glm::dmat4 world;  // worldFromNode
+  bool isVisible;    // KHR_node_visibility, its own and of all nodes above
 };
 
-// Every node of the default scene, parents before children. Throws InputError when a
+bool isVisible(const GltfDocument& document, std::size_t node) {
+  const GltfJson* extension = extensionOf(document.json["nodes"][node], "KHR_node_visibility");
+  if (!extension || !extension->contains("visible")) return true;
+  const GltfJson& visible = (*extension)["visible"];
+  if (!visible.is_boolean())
+    document.fail("nodes[" + std::to_string(node) + "].extensions.KHR_node_visibility.visible",
+                  "is not true or false");
+  return visible;
+}
+
+// Every node of a scene, parents before children. Throws InputError when a
 // transform is not made of finite numbers, and when a node is reached twice, as in a cycle.
-std::vector<PlacedNode> placeNodes(const GltfDocument& document) {
+std::vector<PlacedNode> placeNodes(const GltfDocument& document, std::size_t scene) {
   const tinygltf::Model& model = document.model;
-  if (model.scenes.empty()) document.fail("scenes", "the file has none: there is nothing to draw");
-  const std::size_t scene =
-      model.defaultScene < 0 ? 0 : document.index(model.defaultScene, model.scenes.size(), "scene", "scenes");
-  struct Pending {
-    std::size_t node;
-    glm::dmat4 worldFromParent;
-  };
-  std::vector<Pending> pending;
+  std::vector<PlacedNode> pending;  // each with the matrix of its parent
   std::vector<PlacedNode> placed;
   std::vector<bool> reached(model.nodes.size(), false);
-  const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, const std::string& field) {
+  const auto push = [&](const std::vector<int>& nodes, const glm::dmat4& world, bool visible,
+                        const std::string& field) {
     // Backwards, so that the stack gives them in the file's order.
     for (auto i = nodes.rbegin(); i != nodes.rend(); ++i) {
       const std::size_t node = document.index(*i, model.nodes.size(), field, "nodes");
       if (reached[node])
         document.fail(field, "nodes[" + std::to_string(*i) + "] is reached twice; nodes have to form a tree");
       reached[node] = true;
-      pending.push_back({node, world});
+      pending.push_back({node, world, visible && isVisible(document, node)});
     }
   };
-  push(model.scenes[scene].nodes, glm::dmat4(1), "scenes[" + std::to_string(scene) + "].nodes");
+  push(model.scenes[scene].nodes, glm::dmat4(1), true, "scenes[" + std::to_string(scene) + "].nodes");
   while (!pending.empty()) {
-    const Pending next = pending.back();
+    PlacedNode next = pending.back();
     pending.pop_back();
-    const glm::dmat4 world = next.worldFromParent * parentFromNode(document, next.node);
-    placed.push_back({next.node, world});
-    push(model.nodes[next.node].children, world, "nodes[" + std::to_string(next.node) + "].children");
+    next.world *= parentFromNode(document, next.node);
+    placed.push_back(next);
+    push(model.nodes[next.node].children, next.world, next.isVisible,
+         "nodes[" + std::to_string(next.node) + "].children");
   }
   return placed;
 }
@@ -136,6 +170,7 @@ struct Drawn {
   std::optional<std::array<double, 3>> reflectance;  // see GltfMaterial
   // Into Model::surfaces: of primitives in the file's color, and in that of the reflectance.
   std::optional<std::uint32_t> colored, reflecting;
+  bool leftOut = false;
 };
 
 bool isBound(const tinygltf::Primitive& primitive) {
@@ -173,11 +208,7 @@ private:
 };
 
 void Loader::sayIgnored() {
-  for (const std::string& name : document_.model.extensionsUsed)
-    if (!isDrawn(name)) scene_.warnings.push_back("extension " + name + " is ignored");
-  if (const auto animations = document_.json.find("animations");
-      animations != document_.json.end() && !animations->empty())
-    scene_.warnings.push_back("animations are ignored: nodes stand as they do without them");
+  for (std::string& sentence : unusedFields(document_.json)) scene_.warnings.push_back(std::move(sentence));
 }
 
 void Loader::checkPresetNames() {
@@ -220,6 +251,10 @@ Drawn& Loader::read(int material) {
   if (const auto known = drawn_.find(material); known != drawn_.end()) return known->second;
   Model& model = scene_.model;
   GltfMaterial read = readMaterial(document_, material, options_, scene_.warnings);
+  if (read.leftOut) {
+    drawn_[material].leftOut = true;
+    return drawn_[material];
+  }
   read.surface.texture = textureOf(read.color, false);
   read.surface.normalMap = textureOf(read.normal, true);
   if (read.lobeMap) {
@@ -307,6 +342,7 @@ void Loader::addPrimitive(const tinygltf::Primitive& primitive, const std::strin
   if (primitive.material != -1)
     document_.index(primitive.material, document_.model.materials.size(), field + ".material", "materials");
   Drawn& drawn = read(primitive.material);
+  if (drawn.leftOut) return;
   const auto first = static_cast<std::uint32_t>(model.indices.size());
   const auto firstVertex = static_cast<std::ptrdiff_t>(model.vertices.size());
   if (!appendPrimitive(document_, primitive, field, pose, drawn.texCoords, model, positions_,
@@ -399,13 +435,15 @@ GltfScene Loader::load() {
   sayIgnored();
   checkPresetNames();
   worldFromNode_.resize(document_.model.nodes.size());
-  const std::vector<PlacedNode> placed = placeNodes(document_);
-  for (const auto& [node, world] : placed) worldFromNode_[node] = world;
+  const std::vector<PlacedNode> placed =
+      placeNodes(document_, chooseScene(document_, options_.scene, scene_.warnings));
+  for (const PlacedNode& node : placed) worldFromNode_[node.node] = node.world;
   checkVertices();
-  for (const auto& [node, world] : placed) {
+  for (const auto& [node, world, isShown] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];
-    if (source.mesh != -1) addMesh(node, world);
     if (source.camera != -1) addCamera(node, world);
+    if (!isShown) continue;
+    if (source.mesh != -1) addMesh(node, world);
     addLight(node, world);
   }
   if (model.indices.empty()) document_.fail("meshes", "the scene has no triangles");

@@ -13,10 +13,11 @@ namespace pellucid::harness {
 struct GltfOptions {
   double metersPerUnit = 1;  // glTF's own unit is the meter
   // glTF material name -> preset of the material compiler, a manifest's material in braces, or "thin:R,G,B",
-  // a thin wall's transmittance, instead of what the file says. "*": every material that is not named;
-  // "default": triangles without a material.
+  // a thin wall's transmittance, "opaque", or "none", which leaves its triangles out, instead of what the
+  // file says. "*": every material that is not named; "default": triangles without a material.
   std::map<std::string, std::string> presets;
-  double ior = 0;  // of all media, in place of their own, [1, 3]; 0: their own
+  std::string scene;  // name or number; empty: the file's default
+  double ior = 0;     // of all media, in place of their own, [1, 3]; 0: their own
   // Name of the camera that looks, by which the world's origin is chosen where the scene is far from its own;
   // empty: the file's first, and the model's center without one or for "auto".
   std::string camera;
@@ -29,7 +30,7 @@ struct GltfScene {
   std::vector<std::string> warnings;       // sentences for a person: what is drawn otherwise than asked
 };
 
-// Reads the default scene, with every node's transform, skin and morph targets applied. Memory stays within a
+// Reads a scene, with every node's transform, skin and morph targets applied. Memory stays within a
 // small multiple of the files' size and of 2^24 vertices. External buffers and images must lie in the file's
 // own folder or below it. Throws InputError naming file, field and value for what is broken, and for what
 // cannot be drawn as asked, as required extensions that are not known.

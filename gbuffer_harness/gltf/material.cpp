@@ -20,6 +20,7 @@ namespace {
 struct Scattering {
   std::optional<MaterialSource> medium;  // nothing: opaque
   std::optional<LobeMap> map;
+  bool leftOut = false;
 };
 
 using Rgb = std::array<double, 3>;
@@ -29,6 +30,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
                      *kTransmission = "KHR_materials_transmission", *kVolume = "KHR_materials_volume",
                      *kVolumeScatter = "KHR_materials_volume_scatter", *kIor = "KHR_materials_ior";
+
+// Of the light: glass of more is left out, and of less is opaque.
+constexpr double kMostlyClear = 0.5;
 
 // An attenuation color of 0 or 1 would be an infinite or no coefficient.
 constexpr double kDarkest = 1e-4, kClearest = 0.999;
@@ -146,6 +150,7 @@ private:
   void setAbsorbing();
   void setScattering(const Rgb& multiscatter, double g, double ior);
   void readDiffuse(const Extension& diffuse);
+  void readClear();
   void readVolumeScatter(const Extension& scatter, const std::optional<Extension>& diffuse);
 
   const GltfDocument& document_;
@@ -289,6 +294,17 @@ void Reader::readVolumeScatter(const Extension& scatter, const std::optional<Ext
   }
 }
 
+// Glass bends light, which no capture does: what stands behind it is seen as if it were not there.
+void Reader::readClear() {
+  const auto transmission = find(kTransmission);
+  const double factor = transmission ? transmission->number("transmissionFactor", 0, 0, 1) : 0;
+  if (factor == 0) return;
+  result_.leftOut = factor >= kMostlyClear;
+  warn(std::string("KHR_materials_transmission without _volume_scatter is clear glass, which is ") +
+       (result_.leftOut ? "left out" : "drawn opaque") + "; --material " + name_ +
+       (result_.leftOut ? "=opaque draws it" : "=none leaves it out") + ", and =PRESET gives it a medium");
+}
+
 Scattering Reader::read() {
   readVolume();
   const auto diffuse = find(kDiffuse), volumeScatter = find(kVolumeScatter);
@@ -296,10 +312,8 @@ Scattering Reader::read() {
     readVolumeScatter(*volumeScatter, diffuse);
   else if (diffuse)
     readDiffuse(*diffuse);
-  else if (isVolume_)
-    warn(
-        "a clear medium without KHR_materials_diffuse_transmission or _volume_scatter is not subsurface "
-        "scattering; it is drawn opaque");
+  else
+    readClear();
   return std::move(result_);
 }
 
@@ -332,6 +346,18 @@ bool hasColor(const GltfMaterial& material) {
     return std::all_of(color.begin(), color.end(), [&](double v) { return std::abs(v - gray) < 1e-6; });
   };
   return material.color || std::none_of(std::begin(kDefaultBaseColors), std::end(kDefaultBaseColors), isGray);
+}
+
+// Words of --material in place of a medium.
+constexpr const char *kNoTriangles = "none", *kDrawnOpaque = "opaque";
+
+// Where half of what lies behind shows: coverage of hair cards and leaves is mostly 0 or 1.
+constexpr double kBlendCutoff = 0.5;
+
+bool isEmissive(const tinygltf::Material& material) {
+  return material.extensions.count("KHR_materials_unlit") != 0 ||
+         std::any_of(material.emissiveFactor.begin(), material.emissiveFactor.end(),
+                     [](double v) { return v > 0; });
 }
 
 const std::string* presetFor(const std::string& name, const GltfOptions& options) {
@@ -378,6 +404,9 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
   const std::string name = materialName(document, index);
   const std::string* const preset = presetFor(name, options);
   result.surface.name = name;
+  result.leftOut = preset && *preset == kNoTriangles;
+  const bool isOpaque = preset && *preset == kDrawnOpaque;
+  if (result.leftOut) return result;
   if (index >= 0) {
     const std::string field = "materials[" + std::to_string(index) + "]";
     const tinygltf::Material& material = document.model.materials[static_cast<std::size_t>(index)];
@@ -392,9 +421,17 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
         document.fail(field + ".alphaCutoff", std::to_string(material.alphaCutoff) + " is not >= 0");
       // The factor multiplies the texel's alpha; 2 is above any of them.
       result.surface.alphaCutoff = factor[3] > 0 ? std::min(material.alphaCutoff / factor[3], 2.0) : 2;
-    } else if (material.alphaMode == "BLEND") {
-      warnings.push_back("material \"" + name + "\": alphaMode BLEND is drawn opaque");
+    } else if (material.alphaMode == "BLEND" && !isOpaque) {
+      result.leftOut = factor[3] < kBlendCutoff;
+      result.surface.alphaCutoff = std::min(kBlendCutoff / std::max(factor[3], kBlendCutoff), 1.0);
+      warnings.push_back("material \"" + name + "\": alphaMode BLEND " +
+                         (result.leftOut ? "of an alpha below 0.5 is left out"
+                                         : "is approximated by holes where alpha is below 0.5; --material " +
+                                               name + "=none leaves it out") +
+                         "; --material " + name + "=opaque draws all of it");
+      if (result.leftOut) return result;
     }
+    result.surface.isEmissive = isEmissive(material);
     const GltfJson& json = document.json["materials"][static_cast<std::size_t>(index)];
     result.color = readTextureUse(document, json.value("pbrMetallicRoughness", GltfJson::object()),
                                   "baseColorTexture", field + ".pbrMetallicRoughness");
@@ -407,9 +444,11 @@ GltfMaterial readMaterial(const GltfDocument& document, int index, const GltfOpt
       Scattering scattering = readScattering(document, static_cast<std::size_t>(index), name,
                                              options.metersPerUnit, result.surface, warnings);
       result.medium = scattering.medium;
+      result.leftOut = scattering.leftOut;
       result.lobeMap = std::move(scattering.map);
     }
   }
+  if (isOpaque) return result;
   if (const auto transmittance = preset ? thinTransmittance(document, name, *preset) : std::nullopt) {
     result.medium = thinWall(*transmittance, result.surface).medium;
     return result;

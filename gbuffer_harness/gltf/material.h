@@ -26,6 +26,7 @@ struct GltfMaterial {
   // The preset's diffuse reflectance, linear, where the file gives the material no color: the albedo of the
   // primitives that have no vertex colors either.
   std::optional<std::array<double, 3>> reflectance;
+  bool leftOut = false;  // clear, or so named: its triangles are not there
 };
 
 // A material and what its extensions say, in Pellucid's terms; docs/captures.md. `index` -1: the default

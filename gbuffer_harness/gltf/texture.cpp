@@ -89,6 +89,10 @@ Texture readTexture(const GltfDocument& document, int textureIndex, const std::s
   const tinygltf::Texture& source =
       model.textures[document.index(textureIndex, model.textures.size(), field, "textures")];
   const std::string textureName = "textures[" + std::to_string(textureIndex) + "]";
+  if (source.source < 0)
+    document.fail(textureName + ".source",
+                  "is missing: the image is in an extension; "
+                  "`gltf-transform png in.glb out.glb` makes PNG files, and `ktxdecompress` of KTX files");
   const std::size_t image =
       document.index(source.source, model.images.size(), textureName + ".source", "images");
   const std::string name = "images[" + std::to_string(image) + "]";

@@ -25,6 +25,9 @@ std::string number(double value) {
   return text;
 }
 
+// Backgrounds of id passes: below 0, not finite, or the largest number of 32 bits.
+bool isNoId(float value) { return !(value >= 0 && value < 4294967295.0f); }
+
 // Builds the manifest buffer by buffer.
 class Builder {
 public:
@@ -41,8 +44,12 @@ private:
   void addDepths();
   void addIrradiance();
   void leaveOutNormals();
+  std::optional<std::map<long, std::size_t>> storedIds(const Image& image) const;
+  void mapGivenIds(const Image& image, Json& json);
+  void mapFoundIds(const std::map<long, std::size_t>& stored, Json& json);
   void addMaterial();
   void addBlackness();
+  void nameUnused(const std::vector<ChannelGroup>& groups);
   void addCamera();
   void addMissing();
   Image read(Role role);
@@ -183,44 +190,70 @@ void Builder::leaveOutNormals() {
                             " is not needed: surfaces come from front depth");
 }
 
-void Builder::addMaterial() {
-  Json& json = result_.json["buffers"]["material"];
-  json = {{"constant", {1}}};
-  isTranslucent_.assign(front_.pixels(), true);
-  std::string unsure = "no channel says what is translucent: everything is";
-  if (guesses_.count(Role::Material)) {
-    std::map<long, std::size_t> stored;
-    bool isWhole = true;
-    const Image image = read(Role::Material);
-    for (const float value : image.data) {
-      isWhole = isWhole && value >= 0 && value <= static_cast<float>(kMaxStoredMaterial) &&
-                std::round(value) == value;
-      if (!isWhole || stored.size() > kMostMaterials) break;
-      ++stored[std::lround(value)];
-    }
-    if (isWhole && stored.size() <= kMostMaterials) {
-      json = sourceOf(Role::Material);
-      std::string values;
-      unsure.clear();
-      for (const auto& [value, pixels] : stored) {
-        const bool isMaterial = words_.materialIds.empty() ? value != 0
-                                                           : std::count(words_.materialIds.begin(),
-                                                                        words_.materialIds.end(), value) > 0;
-        json["map"][std::to_string(value)] = isMaterial ? 1 : 0;
-        values +=
-            (values.empty() ? "" : ", ") + std::to_string(value) + " (" + std::to_string(pixels) + " pixels)";
-      }
-      for (std::size_t i = 0; i < image.data.size(); ++i)
-        isTranslucent_[i] = json["map"][std::to_string(std::lround(image.data[i]))] == 1;
-      say(Role::Material, "values " + values);
-      if (words_.materialIds.empty())
-        unsure =
-            "every value but 0 is taken for translucent: " + values + "; --material-id names those that are";
-    } else {
-      unsure = "its values are no small whole numbers, so everything is taken for translucent";
-    }
+// Stored values, and how many pixels hold each. Nothing: too many, or fractions.
+std::optional<std::map<long, std::size_t>> Builder::storedIds(const Image& image) const {
+  std::map<long, std::size_t> stored;
+  for (const float value : image.data) {
+    if (isNoId(value)) continue;
+    if (value > static_cast<float>(kMaxStoredMaterial) || std::round(value) != value) return std::nullopt;
+    ++stored[std::lround(value)];
+    if (stored.size() > kMostMaterials) return std::nullopt;
   }
-  if (!unsure.empty()) doubt("material", unsure);
+  return stored;
+}
+
+// The person's ids hold whatever else is stored: "*" of the map takes the rest.
+void Builder::mapGivenIds(const Image& image, Json& json) {
+  for (const int id : words_.materialIds) json["map"][std::to_string(id)] = 1;
+  json["map"]["*"] = 0;
+  std::string values;
+  for (const int id : words_.materialIds) {
+    const auto pixels = std::count_if(image.data.begin(), image.data.end(), [&](float value) {
+      return std::round(value) == static_cast<float>(id);
+    });
+    values += (values.empty() ? "" : ", ") + std::to_string(id) + " (" + std::to_string(pixels) + " pixels)";
+    if (pixels > 0) continue;
+    const auto [least, most] = std::minmax_element(image.data.begin(), image.data.end());
+    doubt("material", "--material-id: no pixel holds " + std::to_string(id) + "; values lie within " +
+                          number(static_cast<double>(*least)) + " .. " + number(static_cast<double>(*most)));
+  }
+  say(Role::Material, "translucent " + values);
+}
+
+void Builder::mapFoundIds(const std::map<long, std::size_t>& stored, Json& json) {
+  std::string values;
+  for (const auto& [value, pixels] : stored) {
+    json["map"][std::to_string(value)] = value == 0 ? 0 : 1;
+    values +=
+        (values.empty() ? "" : ", ") + std::to_string(value) + " (" + std::to_string(pixels) + " pixels)";
+  }
+  json["map"]["*"] = 0;
+  say(Role::Material, "values " + values);
+  doubt("material",
+        "every value above 0 is taken for translucent: " + values + "; --material-id names those that are");
+}
+
+void Builder::addMaterial() {
+  Json json = {{"constant", {1}}};
+  result_.json["buffers"]["material"] = json;
+  isTranslucent_.assign(front_.pixels(), true);
+  if (!guesses_.count(Role::Material)) {
+    if (!words_.materialIds.empty())
+      throw UsageError("--material-id: no channel has the name of an id pass; --material-index names it");
+    return doubt("material", "no channel says what is translucent: everything is");
+  }
+  const Image image = read(Role::Material);
+  const auto stored = storedIds(image);
+  if (words_.materialIds.empty() && !stored)
+    return doubt("material", "its values are no small whole numbers, so everything is taken for translucent");
+  json = sourceOf(Role::Material);
+  words_.materialIds.empty() ? mapFoundIds(*stored, json) : mapGivenIds(image, json);
+  result_.json["buffers"]["material"] = json;
+  const auto isTranslucent = [&](float value) {
+    const auto found = json["map"].find(std::isfinite(value) ? std::to_string(std::lround(value)) : "*");
+    return found != json["map"].end() && *found == 1;  // "*" is 0
+  };
+  std::transform(image.data.begin(), image.data.end(), isTranslucent_.begin(), isTranslucent);
 }
 
 // Renderers keep the light of subsurface shaders apart from that of diffuse ones.
@@ -231,6 +264,20 @@ void Builder::addBlackness() {
       "irradiance",
       "the pass is black wherever something is translucent: a renderer keeps the light of subsurface shaders "
       "in a pass of their own, which has diffused already; render the irradiance with diffuse shaders");
+}
+
+void Builder::nameUnused(const std::vector<ChannelGroup>& groups) {
+  std::string list;
+  for (const ChannelGroup& group : groups) {
+    const bool isUsed = std::any_of(guesses_.begin(), guesses_.end(), [&](const auto& guess) {
+      const ChannelGroup& used = guess.second.group;
+      return used.file == group.file && used.part == group.part &&
+             used.channels.front() == group.channels.front();
+    });
+    if (!isUsed)
+      list += (list.empty() ? "" : ", ") + group.file.filename().string() + " " + group.channels.front();
+  }
+  if (!list.empty()) result_.found.push_back("not used: " + list);
 }
 
 void Builder::addCamera() {
@@ -287,6 +334,7 @@ GuessedManifest Builder::build() {
   leaveOutNormals();
   addMaterial();
   addBlackness();
+  nameUnused(groups);
   result_.json["lights"] = words_.lights;
   result_.json["materials"] = Json::array({materialJson(parseMaterial("--material", words_.material))});
   addMissing();

@@ -163,12 +163,12 @@ struct Piece {
 
 class Bodies {
 public:
-  explicit Bodies(const Model& model) : model_(model) {
+  explicit Bodies(const Model& model, bool opaque = false) : model_(model) {
     std::vector<std::uint32_t> triangles;
     std::vector<std::uint8_t> materials;
     for (const Part& part : model.parts) {
       const std::uint8_t material = model.surfaces[part.surface].material;
-      if (material == 0) continue;
+      if ((material == 0) != opaque) continue;
       for (std::uint32_t i = 0; i + 2 < part.indexCount; i += 3) {
         triangles.push_back(part.firstIndex + i);
         materials.push_back(material);
@@ -549,7 +549,7 @@ std::optional<std::string> enclosingBody(const Model& model, const std::array<do
   for (const Part& part : model.parts) {
     Body& body = bodies[part.object];
     const Surface& surface = model.surfaces[part.surface];
-    if (surface.material != 0 && !body.surface) body.surface = surface.name;
+    if (holdsMedium(model, surface) && !body.surface) body.surface = surface.name;
     body.angle += solidAngle(model, part, toGlm(point));
   }
   for (const auto& [object, body] : bodies) {
@@ -601,6 +601,77 @@ void refuseEnclosedLights(const Model& model) {
                            "\": shadow maps hold the faces where light enters, and this light enters none; "
                            "move it outside, or give the body a hollow around it");
   }
+}
+
+namespace {
+
+// A glowing surface that spans a quarter of what a light sees is the lamp that the light stands for.
+constexpr double kLamp = std::numbers::pi;
+
+struct Lamp {
+  std::string surface;            // name of a glowing one, or of the first
+  double glowing = 0, whole = 0;  // solid angles, as the light sees them
+};
+
+// Light reaches a translucent surface in the room that a piece encloses.
+bool holdsTranslucent(const Model& model, const Piece& piece) {
+  return std::any_of(model.parts.begin(), model.parts.end(), [&](const Part& part) {
+    if (model.surfaces[part.surface].material == 0 || part.indexCount == 0) return false;
+    double angle = 0;
+    for (const std::uint32_t first : piece.triangles)
+      angle += solidAngle(model, first, cornerOf(model, part.firstIndex));
+    return std::abs(angle) > kEnclosed;
+  });
+}
+
+void removeTriangles(Model& model, const std::set<std::uint32_t>& removed) {
+  std::vector<std::uint32_t> indices;
+  for (Part& part : model.parts) {
+    const auto first = static_cast<std::uint32_t>(indices.size());
+    for (std::uint32_t i = part.firstIndex; i + 2 < part.firstIndex + part.indexCount; i += 3)
+      if (!removed.count(i)) indices.insert(indices.end(), &model.indices[i], &model.indices[i] + 3);
+    part.firstIndex = first;
+    part.indexCount = static_cast<std::uint32_t>(indices.size()) - first;
+  }
+  model.indices = std::move(indices);
+  std::erase_if(model.parts, [](const Part& part) { return part.indexCount == 0; });
+}
+
+}  // namespace
+
+std::vector<std::string> openLamps(Model& model) {
+  const Bodies opaque(model, true);
+  std::vector<const Surface*> surfaceAt(model.indices.size());
+  for (const Part& part : model.parts)
+    std::fill_n(surfaceAt.begin() + part.firstIndex, part.indexCount, &model.surfaces[part.surface]);
+  std::vector<std::string> sentences;
+  std::set<std::uint32_t> removed;
+  for (std::size_t i = 0; i < model.lights.size(); ++i) {
+    if (model.lights[i].type == PELLUCID_LIGHT_DIRECTIONAL) continue;
+    const glm::dvec3 at = toGlm(model.lights[i].position);
+    for (const Piece& piece : opaque.pieces()) {
+      Lamp lamp{surfaceAt[piece.triangles.front()]->name};
+      for (const std::uint32_t first : piece.triangles) {
+        const double angle = solidAngle(model, first, at);
+        lamp.whole += angle;
+        if (!surfaceAt[first]->isEmissive) continue;
+        lamp.glowing += angle;
+        lamp.surface = surfaceAt[first]->name;
+      }
+      const bool isLamp = std::abs(lamp.glowing) > kLamp;
+      if (!isLamp && !(std::abs(lamp.whole) > kEnclosed)) continue;
+      if (!isLamp && holdsTranslucent(model, piece)) continue;
+      const std::string begin = model.name + ": lights[" + std::to_string(i) + "] lies inside ";
+      if (isLamp) removed.insert(piece.triangles.begin(), piece.triangles.end());
+      sentences.push_back(isLamp ? begin + "or beside glowing \"" + lamp.surface +
+                                       "\", which is left out, as it would block the light that stands for it"
+                                 : begin + "opaque \"" + lamp.surface +
+                                       "\", which lets no light out; --material " + lamp.surface +
+                                       "=none leaves it out, and =thin:R,G,B lets light through");
+    }
+  }
+  if (!removed.empty()) removeTriangles(model, removed);
+  return sentences;
 }
 
 }  // namespace pellucid::harness

@@ -47,8 +47,8 @@ std::vector<OpenObject> openObjects(const Model& model);
 // Returns the number of holes filled.
 std::size_t fillHoles(Model& model);
 
-// Name of the first surface with a material of a closed object that the point lies in, not in a hollow of it.
-// Open meshes enclose nothing. Objects of surfaces without a material are not looked at. point: world.
+// Name of the first surface with a medium of a closed object that the point lies in, not in a hollow of it.
+// Open meshes enclose nothing. Objects of opaque and thin-walled surfaces are not looked at. point: world.
 std::optional<std::string> enclosingBody(const Model& model, const std::array<double, 3>& point);
 
 // A sentence, which begins with the model's name, for each opaque surface that begins inside a closed
@@ -58,5 +58,10 @@ std::vector<std::string> opaqueInside(const Model& model);
 // Throws InputError naming the model and the light: a point or spot light inside a translucent body, whose
 // light enters through no face that a shadow map could hold.
 void refuseEnclosedLights(const Model& model);
+
+// Removes glowing opaque pieces around or close to a point or spot light, which is the light that they give.
+// Returns sentences, which name the light and the surface: of these, and of other opaque pieces around a
+// light.
+std::vector<std::string> openLamps(Model& model);
 
 }  // namespace pellucid::harness

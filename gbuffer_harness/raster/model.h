@@ -63,6 +63,7 @@ struct Surface {
   double displaced = 0;                          // 0 .. 1
   double backscatter = 0;                        // >= 0
   SurfaceLobes lobes = SurfaceLobes::Together;
+  bool isEmissive = false;  // glows in the file; a capture holds no such light
 };
 
 struct Part {

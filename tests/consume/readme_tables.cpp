@@ -2,7 +2,7 @@
 //   pellucid_readme_tables --check|--update FILE TABLE
 // TABLE: inputs, README.md; features, docs/performance.md; errors, docs/accuracy.md; domains,
 // docs/materials.md, what values fields may have; stress, CONTRIBUTING.md, what must hold for random frames;
-// constants, docs/how-it-works.md, the constants that were measured.
+// constants, docs/how-it-works.md, the constants that were measured; gltf, docs/captures.md, fields of glTF.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -16,6 +16,7 @@
 #include "diffusion_error_table.h"
 #include "domains.h"
 #include "generated_block.h"
+#include "gltf/fields.h"
 #include "pellucid/pellucid.h"
 #include "stress/checks.h"
 
@@ -237,9 +238,13 @@ int main(int argc, char** argv) {
     const char* name;
     std::string (*make)();
   };
-  constexpr Table tables[] = {{"inputs", imagesTable}, {"features", featuresTable},
-                              {"errors", errorsTable}, {"domains", domainsTable},
-                              {"stress", stressTable}, {"constants", constantsTable}};
+  constexpr Table tables[] = {{"inputs", imagesTable},
+                              {"features", featuresTable},
+                              {"errors", errorsTable},
+                              {"domains", domainsTable},
+                              {"stress", stressTable},
+                              {"constants", constantsTable},
+                              {"gltf", pellucid::harness::gltfTable}};
   if (argc == 4)
     for (const Table& table : tables)
       if (table.name == std::string(argv[3])) try {
@@ -249,7 +254,8 @@ int main(int argc, char** argv) {
           return 1;
         }
   std::fputs(
-      "usage: pellucid_readme_tables --check|--update FILE inputs|features|errors|domains|stress|constants\n",
+      "usage: pellucid_readme_tables --check|--update FILE "
+      "inputs|features|errors|domains|stress|constants|gltf\n",
       stderr);
   return 2;
 }

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture/read.h"
 #include "capture/shadow_images.h"
+#include "capture/write.h"
 #include "common/error.h"
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/raster.h"
 #include "reference/reference.h"
 #include "scene/vector.h"
+#include "temporary_directory.h"
 
 namespace {
 
@@ -128,6 +131,21 @@ TEST_F(EngineMaps, AtlasAndArrayAreAsSeparateMaps) {
       EXPECT_TRUE(sameBits(render(c, samples), expected[samples / 8]))
           << "placement " << static_cast<int>(placement) << ", samples " << samples;
   }
+}
+
+// Three maps leave a tile of four empty.
+TEST_F(EngineMaps, AnAtlasWithAnEmptyTileIsWritten) {
+  Model model = ballAndEar();
+  model.lights = {directional({0, 0, 1}), directional({0, 1, 0}), directional({1, 0, 0})};
+  ShadowDrawing drawing;
+  drawing.placement = MapPlacement::Atlas;
+  const Capture drawn = draw(model, drawing);
+  const TemporaryDirectory folder;
+  writeCapture(drawn, folder / "c.exr");
+  const Capture read = readCapture(folder / "c.exr");
+  ASSERT_EQ(read.lights.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(read.lights[i].shadowMaps[0].casterMaterial, drawn.lights[i].shadowMaps[0].casterMaterial);
 }
 
 TEST_F(EngineMaps, LayersNeedAnArrayContext) {

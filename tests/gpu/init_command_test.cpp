@@ -66,6 +66,20 @@ TEST_F(InitCommand, AnAbsentFlagIsAGuess) {
   }
 }
 
+// A scene's own default is forward, and perspective.
+TEST_F(InitCommand, AnAbsentFlagOfACaptureIsTheScenesDefault) {
+  const auto captured = [&](const std::string& flags) {
+    EXPECT_EQ(
+        run("capture --procedural sphere --size 32x24 --depth device " + flags + " -o " + path("f.exr")).code,
+        0);
+    return bytes("f.exr");
+  };
+  const std::string absent = captured("");
+  EXPECT_EQ(absent, captured("--forward-z --projection perspective"));
+  EXPECT_NE(absent, captured("--reversed-z"));
+  EXPECT_NE(absent, captured("--projection orthographic"));
+}
+
 TEST_F(InitCommand, NamesWhatItNeeds) {
   const std::string init = "init " + path("s.exr") + " -o " + path("c.json");
   expect(2, init, "--fov: is needed");

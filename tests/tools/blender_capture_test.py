@@ -166,6 +166,87 @@ class BlenderCapture(unittest.TestCase):
         self.assertEqual([len(light["shadowMaps"]) for light in lights], [5, 1, 1, 1])
         self.assertFalse([w for w in self.info("lights/capture.json")["warnings"] if "not of length 1" not in w])
 
+    # Names of lamps whose nodes a manifest holds, and one whose it does not.
+    NODES = ("import math\n"
+             "[bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"
+             "def add(name, kind='POINT', energy=4 * math.pi):\n"
+             "  data = bpy.data.lights.new(name, kind); data.energy = energy; data.shadow_soft_size = 0; data.use_nodes = True\n"
+             "  thing = bpy.data.objects.new(name, data); scene.collection.objects.link(thing); thing.location = (0, 0, 50)\n"
+             "  tree = data.node_tree; emission = tree.nodes['Emission']\n"
+             "  return thing, tree, emission\n"
+             "add('a')[2].inputs['Strength'].default_value = 5\n"
+             "add('b')[2].inputs['Color'].default_value = (1, .1, 0, 1)\n"
+             "thing, tree, emission = add('c'); falloff = tree.nodes.new('ShaderNodeLightFalloff')\n"
+             "falloff.inputs['Strength'].default_value = 2\n"
+             "tree.links.new(falloff.outputs['Constant'], emission.inputs['Strength'])\n"
+             "thing, tree, emission = add('d'); noise = tree.nodes.new('ShaderNodeTexNoise')\n"
+             "tree.links.new(noise.outputs[1], emission.inputs['Color'])\n"
+             "add('portal', 'AREA')[0].data.cycles.is_portal = True\n"
+             "add('specular')[0].visible_diffuse = False\n"
+             "add('negative', energy=-10)\n"
+             "add('far', 'SUN', 1)[0].data.cycles.cast_shadow = False")
+
+    def test_lamps_have_the_light_of_their_nodes(self):
+        said = self.capture("nodes", "--shadow-size", "16", setup=self.NODES)
+        lights = self.manifest("nodes/capture.json")["lights"]
+        self.assertEqual([round(light["intensity"] / (light.get("range", 1) ** 2), 3) for light in lights], [5, 1, 2, 1, 1])
+        self.assertEqual([round(value, 3) for value in lights[1]["color"]], [1, 0.1, 0])
+        table = lights[2]["distanceTable"]
+        self.assertAlmostEqual(table[32] / table[63], (32 / 63) ** 2, places=6, msg="r^2 f(r) of a constant f")
+        self.assertIn("lamp d: node Noise Texture (Noise Texture) is left out of what comes through", said)
+        self.assertIn("lamp negative: its negative light is left out", said)
+        self.assertIn("lamp far casts no shadow", said)
+        self.assertNotIn("portal", said)
+
+    def test_shadow_maps_hold_what_casts_shadows(self):
+        # The pebble lies 60 behind the wax, so that a map's depths reach farther with it.
+        for change, casts in (("visible_camera = False", True), ("visible_shadow = False", False)):
+            name = change.split()[0]
+            setup = f"stone = bpy.data.objects['Icosphere.001']; stone.location.z = -60; stone.{change}"
+            self.capture(name, "--shadow-size", "64", setup=setup)
+            for light in self.info(name + "/capture.json")["lights"]:
+                near, far = light["shadowMaps"][0]["range"]
+                self.assertEqual(far - near > 40, casts, change)
+
+    def test_what_no_capture_holds_is_refused_or_named(self):
+        camera = "scene.camera.data"
+        self.assertIn("camera Camera is panoramic", self.capture("pano", setup=camera + ".type = 'PANO'", expected=1))
+        self.assertIn("no view layer is on", self.capture("off", setup="scene.view_layers[0].use = False", expected=1))
+        self.assertIn("has the Material Override wax", self.capture(
+            "override", setup="scene.view_layers[0].material_override = bpy.data.materials['wax']", expected=1))
+        setup = (camera + ".dof.use_dof = scene.render.use_multiview = scene.render.use_motion_blur = True; "
+                 "bpy.data.objects['Icosphere.001'].is_holdout = True; scene.view_layers.new('second'); "
+                 "scene.view_layers[0].use = False")
+        said = self.capture("left", "--shadow-size", "16", setup=setup)
+        for words in ("depth of field", "stereoscopy", "motion blur", "object Icosphere.001: it is a holdout"):
+            self.assertIn(words, said)
+
+    def test_errors_end_with_a_sentence(self):
+        words = [BLENDER, "-b", self.scene, "-P", os.path.join(TOOLS, "blender_capture.py"), "--", "-o", "/dev/null/none"]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        self.assertGreater(done.returncode, 0)
+        self.assertIn("pellucid: NotADirectoryError at line", done.stderr)
+        self.assertNotIn("Traceback", done.stdout + done.stderr)
+
+    def test_properties_outside_the_table_are_named(self):
+        check = ("import sys, bpy; sys.path.insert(0, %r); import blender_capture as b\n"
+                 "bpy.context.scene.camera.data.shift_x = 0.25; table = b.PROPERTIES['camera']\n"
+                 "graph = bpy.context.evaluated_depsgraph_get()\n"
+                 "b.say_what_is_left_out(graph); assert not b.SAID, b.SAID\n"
+                 "table['used'] = table['used'].replace('shift_*', '')\n"
+                 "b.say_what_is_left_out(graph); assert any('its shift_x is 0.25' in s for s in b.SAID), b.SAID") % TOOLS
+        run(BLENDER, "-b", self.scene, "--python-exit-code", "1", "--python-expr", check)
+
+    def test_emitting_meshes_light_hidden_faces(self):
+        setup = ("[bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"
+                 "bpy.ops.mesh.primitive_cube_add(size=8, location=(0, 0, -40)); m = bpy.data.materials.new('glow')\n"
+                 "m.use_nodes = True; p = m.node_tree.nodes['Principled BSDF']; p.inputs['Emission'].default_value = (1, 1, 1, 1)\n"
+                 "p.inputs['Emission Strength'].default_value = 50; bpy.context.object.data.materials.append(m)")
+        said = self.capture("glow", "--shadow-size", "16", setup=setup)
+        self.assertIn("emits light (material glow)", said)
+        hidden = self.info("glow/capture.json")["buffers"]["hiddenIrradiance"]["range"]
+        self.assertGreater(max(hidden), 0.1)
+
     def test_one_command_makes_the_picture(self):
         self.capture("picture", "--shadow-size", "64", "--replay", COMMAND)
         self.assertGreater(os.path.getsize(self.path("picture/picture.png")), 1000)

@@ -425,6 +425,20 @@ TEST_F(Manifests, FloatMaterialIsRounded) {
   EXPECT_EQ(capture.material[1], 1);
 }
 
+TEST_F(Manifests, AStarNamesAllOtherMaterials) {
+  Image id(kSampleWidth, kSampleHeight, 1, -1);
+  id.data[0] = 9;
+  id.data[1] = std::numeric_limits<float>::quiet_NaN();
+  writeExr(directory / "id.exr", id, {"id"});
+  manifest["buffers"]["material"] = {{"file", "id.exr"}, {"channel", "id"}, {"map", {{"9", 1}, {"-1", 0}}}};
+  expectNames(error(), {"buffers.material", "pixel (1, 0)", "nan", "\"*\": 0"});
+  manifest["buffers"]["material"]["map"] = {{"9", 1}, {"*", 0}};
+  const Capture capture = read();
+  EXPECT_EQ(capture.material[0], 1);
+  EXPECT_EQ(capture.material[1], 0);
+  EXPECT_EQ(capture.material[2], 0);
+}
+
 TEST_F(Manifests, MaterialMayBeConstant) {
   manifest["buffers"]["material"] = {{"constant", {1}}};
   EXPECT_EQ(read().material, std::vector<std::uint8_t>(kSampleWidth * kSampleHeight, 1));

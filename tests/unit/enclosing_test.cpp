@@ -83,5 +83,48 @@ TEST(Enclosing, LightsInsideAreRefusedByName) {
   EXPECT_NE(text.find("wax"), std::string::npos) << text;
 }
 
+TEST(Enclosing, ThinWallsEncloseNoLight) {
+  Model model = sphere(10);
+  model.materials[0] = ThinWallMaterial{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {}};
+  EXPECT_FALSE(enclosingBody(model, {0, 0, 0}));
+}
+
+// Wax at the origin, and a lamp's opaque ball around a light beside it.
+Model lamp(bool glows) {
+  Model model = sphere(10);
+  model.surfaces.push_back({});
+  model.surfaces[1].name = "bulb";
+  model.surfaces[1].isEmissive = glows;
+  addSphere(model, {30, 0, 0}, 3, 12);
+  endPart(model, 1, 1);
+  model.lights = {directional({0, 0, -1}), pointLight({30, 0, 0})};
+  return model;
+}
+
+TEST(Enclosing, GlowingSurfacesAroundALightAreLeftOut) {
+  Model model = lamp(true);
+  const std::size_t wax = model.parts[0].indexCount;
+  const std::vector<std::string> said = openLamps(model);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("lights[1] lies inside or beside glowing \"bulb\""), std::string::npos) << said[0];
+  EXPECT_EQ(model.indices.size(), wax);
+  EXPECT_EQ(model.parts.size(), 1u);
+}
+
+TEST(Enclosing, OpaqueSurfacesAroundALightAreNamed) {
+  Model model = lamp(false);
+  const std::size_t before = model.indices.size();
+  const std::vector<std::string> said = openLamps(model);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("lights[1] lies inside opaque \"bulb\""), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("--material bulb=none"), std::string::npos) << said[0];
+  EXPECT_EQ(model.indices.size(), before);
+  // A room around the light holds the wax, too.
+  addSphere(model, {0, 0, 0}, 100, 12);
+  endPart(model, 2, 1);
+  model.lights[1].position = {50, 0, 0};
+  EXPECT_TRUE(openLamps(model).empty());
+}
+
 }  // namespace
 }  // namespace pellucid::test

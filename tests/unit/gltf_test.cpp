@@ -178,9 +178,9 @@ TEST_F(Gltf, CamerasAndLights) {
   EXPECT_EQ(m.lights[1].position, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(m.lights[1].range, 7);
   EXPECT_EQ(m.lights[1].outerConeAngle, 0.3);
-  EXPECT_EQ(scene.warnings,
-            (std::vector<std::string>{"extension VENDOR_thing is ignored",
-                                      "animations are ignored: nodes stand as they do without them"}));
+  EXPECT_EQ(scene.warnings, (std::vector<std::string>{
+                                "extension VENDOR_thing is not known, and what it says is left out",
+                                "animations[0]: animations are left out: nodes stand in their rest pose"}));
 }
 
 TEST_F(Gltf, TexturesAreDecoded) {
@@ -484,8 +484,9 @@ constexpr const char* kMistakes = R"(
 /extensions/KHR_lights_punctual/lights | [{"type": "point"}, {"type": "spot"}] | lights[1].spot: is missing
 /extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": -1}] | lights[0].intensity
 /extensionsRequired | ["KHR_materials_unlit", "VENDOR_thing"] | extensionsRequired | "VENDOR_thing" is not supported
-/extensionsRequired | ["KHR_draco_mesh_compression"] | extensionsRequired | "KHR_draco_mesh_compression" is not supported
-/extensionsRequired | ["EXT_mesh_gpu_instancing"] | extensionsRequired | "EXT_mesh_gpu_instancing" is not supported
+/extensionsRequired | ["KHR_draco_mesh_compression"] | extensionsRequired | "KHR_draco_mesh_compression" is not supported | gltf-transform copy in.glb out.glb
+/extensionsRequired | ["EXT_mesh_gpu_instancing"] | extensionsRequired | "EXT_mesh_gpu_instancing" is not supported | Blender
+/nodes/0/extensions/KHR_node_visibility | {"visible": 1} | KHR_node_visibility.visible | true or false
 /asset/version | "1.0" | asset.version | 1.0
 )";
 

@@ -204,6 +204,31 @@ TEST_F(Init, TexturesOfADebuggerNeedTheCamerasNumbers) {
   EXPECT_NE(guessed.missing[0].find("backDepth: without"), std::string::npos);
 }
 
+// Backgrounds of id passes are -1, the largest number, or no number; a person's ids hold beside any of them.
+TEST_F(Init, NumbersOfNoMaterialAreBackground) {
+  for (const float background : {-1.0f, 4294967295.0f, std::numeric_limits<float>::quiet_NaN(), 0.25f}) {
+    Image id = materialImage(3);
+    for (float& value : id.data) value = value == 0 ? background : value;
+    std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+    channels.push_back({"depth.Z", &frame_.frontDepth.image, 0});
+    channels.push_back({"id.X", &id, 0});
+    channels.push_back({"fog.X", &id, 0});
+    write("ids.exr", channels);
+    InitWords words;
+    words.camera.verticalFov = fov_;
+    const auto found = [&] { return read(guess({"ids.exr"}, words)).material; };
+    if (background != 0.25f) {
+      EXPECT_EQ(found(), frame_.material) << background;
+    }
+    words.materialIds = {3};
+    EXPECT_EQ(found(), frame_.material) << background;
+    EXPECT_EQ(guess({"ids.exr"}, words).found.back(), "not used: ids.exr fog.X");
+    words.materialIds = {4};
+    EXPECT_NE(guess({"ids.exr"}, words).json["// material"].get<std::string>().find("no pixel holds 4"),
+              std::string::npos);
+  }
+}
+
 // Layers of a view layer, E / pi, no camera: Blender's multilayer file without its script.
 TEST_F(Init, BlendersPassesAreKnown) {
   const Image id = materialImage(3);
@@ -224,7 +249,8 @@ TEST_F(Init, BlendersPassesAreKnown) {
   EXPECT_EQ(capture.viewFromWorld, kIdentity);
   EXPECT_TRUE(guessed.json.contains("// camera"));
   expectSameRays(capture.clipFromView, frame_.clipFromView);
-  EXPECT_EQ(guessed.json["buffers"]["material"]["map"], (nlohmann::ordered_json{{"0", 0}, {"3", 1}}));
+  EXPECT_EQ(guessed.json["buffers"]["material"]["map"],
+            (nlohmann::ordered_json{{"0", 0}, {"3", 1}, {"*", 0}}));
 
   words.roles = {{Role::Irradiance, "ViewLayer.Combined"}};
   EXPECT_EQ(guess({"render.exr"}, words).json["buffers"]["irradiance"]["channels"][0],
