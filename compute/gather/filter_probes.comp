@@ -19,16 +19,17 @@ const float kHalfAway = 8.0;
 const int kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
 const int kInside = PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP, kBorder = kRow * kRow - kInside;
 
-shared vec4 places[kRow * kRow];  // position; w: bits of the material, 0: nothing there
+shared uint fronts[kRow * kRow];  // as probes have planar distance and material, 0: nothing there
 shared uvec4 found[kRow * kRow];  // as probes have light; the normal in halves, in place of the probes' own
 shared uint someLight, someReturned;
 
 // The cell's place in the shared arrays; `local`: the cell from the group's first one.
 int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; }
 
-void keepProbe(ivec2 local, ivec2 cell, int side, uvec4 bits) {
+// Of 16 KiB that each device has, cells take 20 bytes.
+void keepProbe(ivec2 local, uvec4 bits) {
   vec3 normal = normalOf(bits);
-  places[placeOf(local)] = vec4(viewPosition(cell, side, unpackPlace(bits)), uintBitsToFloat(bits.z & 0xFFu));
+  fronts[placeOf(local)] = bits.z;
   found[placeOf(local)] = uvec4(bits.x, (bits.y & 0xFFFFu) | packHalf2x16(vec2(0.0, normal.x)), packHalf2x16(normal.yz),
                                 bits.w);
 }
@@ -91,26 +92,37 @@ vec3 accumulated(uvec4 own, ivec2 cell, int side, vec3 light, vec3 standardError
 
 // ---- Sharing
 
+// xy: direction of planar length 1, zw: origin of a pixel's view ray.
+vec4 rayOf(vec2 pixel) { return frame.camera.rayBase + pixel.x * frame.camera.rayX + pixel.y * frame.camera.rayY; }
+
+vec3 onRay(vec4 ray, uint front) {
+  float planar = uintBitsToFloat(front & 0xFFFFFF00u);
+  return vec3(ray.zw + planar * ray.xy, planar * frame.camera.range.x);
+}
+
 // The probe `own` with its filtered light. `perSquare`: falloff by distance, per squared scene unit.
 uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
   int center = placeOf(local);
-  vec3 place = places[center].xyz, normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
+  // A cell stands where its first pixel's ray does: direction and origin, as ViewRay has them.
+  vec4 ownRay = rayOf(vec2(side * cell)), alongX = float(side) * frame.camera.rayX, alongY = float(side) * frame.camera.rayY;
+  vec3 place = onRay(ownRay, fronts[center]), normal = vec3(unpackHalf2x16(found[center].y).y, unpackHalf2x16(found[center].z));
   float total = 0.0, squaredWeights = 0.0, totalReturned = 0.0;
   vec3 added = vec3(0.0), squares = vec3(0.0), returned = vec3(0.0);
   // Unrolled, these loops would not fit caches of instructions. Floats count cells, because conversions from integers are slow.
   [[dont_unroll]] for (float y = -float(kReach); y <= float(kReach); y += 1.0) {
     float x = abs(y) - float(kReach);
+    vec4 ray = ownRay + y * alongY;
     int at = center + int(y) * kRow + int(x), last = at - 2 * int(x);
     [[dont_unroll]] for (; at <= last; ++at, x += 1.0) {
       float squared = x * x + y * y;
-      vec4 theirs = places[at];
+      uint front = fronts[at];
       uvec4 bits = found[at];
-      vec3 apart = theirs.xyz - place;
+      vec3 apart = onRay(ray + x * alongX, front) - place;
       vec2 middle = unpackHalf2x16(bits.y);
       float facing = max(dot(vec3(middle.y, unpackHalf2x16(bits.z)), normal), 0.0);
       // The square keeps what surfaces turn over from being evened out: at 45 degrees a probe counts half.
       float falls = exp2(-squared / kHalfAway - dot(apart, apart) * perSquare) * facing * facing;
-      float weight = floatBitsToUint(theirs.w) == (own.z & 0xFFu) ? falls : 0.0;
+      float weight = (front & 0xFFu) == (own.z & 0xFFu) ? falls : 0.0;
       vec3 light = vec3(unpackHalf2x16(bits.x), middle.x);
       added += weight * light;
       if (accumulates()) squares += weight * light * light;
@@ -139,13 +151,13 @@ void filterCells(ivec2 first, int side) {
   ivec2 local = ivec2(gl_LocalInvocationID.xy), cell = first + local;
   uvec4 own = probeOf(foundImage, cell, side, 0);
   bool light = hasLight(own), returned = hasReturned(own);
-  keepProbe(local, cell, side, own);
+  keepProbe(local, own);
   for (int i = index; i < kBorder; i += kInside) {
     ivec2 border = borderCell(i);
     uvec4 beside = probeOf(foundImage, first + border, side, 0);
     light = light || hasLight(beside);
     returned = returned || hasReturned(beside);
-    keepProbe(border, first + border, side, beside);
+    keepProbe(border, beside);
   }
   if (index == 0) someLight = someReturned = 0u;
   barrier();

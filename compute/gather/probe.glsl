@@ -63,11 +63,6 @@ ivec2 pixelInCell(ivec2 cell, int side, int index) {
   return side * cell + ivec2(index & (side - 1), index >> shiftOf(side));
 }
 
-vec3 viewPosition(ivec2 cell, int side, ProbePlace p) {
-  ViewRay ray = viewRay(frame.camera, pixelInCell(cell, side, p.index));
-  return ray.origin + p.front * ray.direction;
-}
-
 // Cells [xy, zw) that the rect touches.
 ivec4 cellsOf(uvec4 rect, int side) {
   int shift = shiftOf(side);

@@ -336,7 +336,7 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
     for (int k = 0; k < 3; ++k) material.transmittance[k][0] = 4.0f / static_cast<float>(k + 1);
   if (material.transmittanceModel == PELLUCID_TRANSMITTANCE_SINH_EXP) {
     const float parameters[3][5] = {
-        {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 0.5f}};
+        {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 3.5f}};
     std::memcpy(material.transmittance, parameters, sizeof parameters);
   }
   for (const auto source : {0, 1}) {
