@@ -90,7 +90,7 @@ bool materialPart(uint word, ivec2 pixels, out ivec2 first) {
   return some != 0u;
 }
 
-// The same of the group's block with material.
+// The part that materialPart finds in the listed block of the group.
 bool materialPart(ivec2 pixels, out ivec2 first) { return materialPart(listedBlock(materialList()), pixels, first); }
 
 #endif

@@ -12,9 +12,9 @@ layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) unifo
 layout(set = 0, binding = PELLUCID_BINDING_MOTION) uniform texture2D motionImage;
 
 const int kReach = PELLUCID_SHARE_REACH;
-const float kReturnedReach = 4.0; // of what bodies return, which has no noise; squared cells
-// Squared cells at which a probe counts half. At the reach it counts a ninth: a mean whose ends count fully is grainy, because from cell
-// to cell other probes are in it.
+const float kReturnedReach = 2.0; // cells; the light that bodies return has no noise
+// Squared cells at which a probe counts half. At the reach a probe counts a ninth: a mean whose ends count fully is grainy, because
+// probes come in and fall out from cell to cell.
 const float kHalfAway = 8.0;
 const int kRow = PELLUCID_FILTER_GROUP + 2 * kReach;
 const int kInside = PELLUCID_FILTER_GROUP * PELLUCID_FILTER_GROUP, kBorder = kRow * kRow - kInside;
@@ -26,7 +26,7 @@ shared uint someLight, someReturned;
 // The cell's place in the shared arrays; `local`: the cell from the group's first one.
 int placeOf(ivec2 local) { return (local.y + kReach) * kRow + local.x + kReach; }
 
-// Of 16 KiB that each device has, cells take 20 bytes.
+// A cell takes 20 bytes, as every device has 16 KiB for a group.
 void keepProbe(ivec2 local, uvec4 bits) {
   vec3 normal = normalOf(bits);
   fronts[placeOf(local)] = bits.z;
@@ -54,9 +54,9 @@ const float kOwnFrame = 0.1;      // part of the frame's own light: a mean over 
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame: 1.2 m/s at 1 m and 60 frames a second
 const float kSameFacing = 0.7;    // cosine between normals of both frames: beyond 45 degrees probes count less than half
 const float kMostErrors = 3.0;    // standard errors of the mean over all that share: light that stays is within them in 99.7 % of frames
-// Where few probes share, their differences do not tell the error: it then is this part of the light, about what eight samples are off by.
+// The differences of few probes do not tell the error of their mean. The error then is this part of the light, about that of eight samples.
 const float kLoneError = 0.1;
-const float kFewShare = 0.1;
+const float kFewShare = 0.1; // sum of squared weights of a mean over few, as over fewer than ten alike
 
 // `light`, the mean of the probes around, averaged with the light that the earlier frame had at the probe's place, as far as that is
 // within the mean's error: light that changed does not linger.
@@ -126,7 +126,7 @@ uvec4 filtered(ivec2 local, ivec2 cell, int side, uvec4 own, float perSquare) {
       vec3 light = vec3(unpackHalf2x16(bits.x), middle.x);
       added += weight * light;
       if (accumulates()) squares += weight * light * light;
-      if (squared <= kReturnedReach && someReturned != 0u) {
+      if (squared <= kReturnedReach * kReturnedReach && someReturned != 0u) {
         returned += weight * returnedOf(bits);
         totalReturned += weight;
       }

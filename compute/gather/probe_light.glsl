@@ -140,8 +140,8 @@ int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
 }
 
-// The nearest entry point around an opaque one that is not opaque itself, as single texels of hair hide the surface around them. Where
-// all are opaque, the given one.
+// The given entry point, or, if it is opaque, the nearest one around that is not: single texels of hair hide the surface around them. An
+// opaque one among opaque ones stays.
 uvec4 besideHair(uint map, vec2 place, int level, uvec4 bits) {
   const int kPlaces = 12; // 4 beside, 4 at the corners, 4 two away
   vec2 size = vec2(maps[map].place.zw);

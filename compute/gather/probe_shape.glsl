@@ -114,7 +114,7 @@ float thicknessAt(ivec2 pixel, Surface x) {
   if (!hasFlag(PELLUCID_FLAG_BACK_DEPTH)) return kThick;
   if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) {
     float stored = thicknessOf(texelFetch(backDepthImage, inImage(pixel), 0).x);
-    return isWithin(stored, 0.0, kThick) ? stored : kThick;
+    return stored < 0.0 ? kThick : min(stored, kThick);
   }
   BackFace back = backAt(pixel);
   if (!(back.chord > 0.0)) return kThick;

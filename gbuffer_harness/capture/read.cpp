@@ -185,7 +185,7 @@ bool holdsSurface(const DepthImage& depth, std::size_t pixel) {
 void requirePositive(const BufferSource& source, const DepthImage& depth) {
   if (depth.encoding == PELLUCID_DEPTH_DEVICE) return;
   const bool isThickness = depth.encoding == PELLUCID_DEPTH_THICKNESS;
-  const auto within = [&](float v) { return (isThickness ? v >= 0 : v > 0) && v < kLeastNoDepth; };
+  const auto within = [&](float v) { return isThickness ? holdsThickness(v) : v > 0 && v < kLeastNoDepth; };
   const std::vector<float>& values = depth.image.data;
   if (std::any_of(values.begin(), values.end(), within) ||
       std::none_of(values.begin(), values.end(), [&](float v) { return within(-v); }))

@@ -82,8 +82,8 @@ private:
     piece.high = glm::max(piece.high, position);
     if (capture_.backDepth.image.empty()) return;
     if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) {
-      const double mm = *capture_.backDepth.image.at(x, y);
-      if (holdsThickness(static_cast<float>(mm))) piece.thickness = std::max(piece.thickness, mm / (1000 * capture_.metersPerUnit));
+      const float mm = *capture_.backDepth.image.at(x, y);
+      if (holdsThickness(mm)) piece.thickness = std::max(piece.thickness, double(mm) / (1000 * capture_.metersPerUnit));
       return;
     }
     const auto back = camera_.planarDepth(*capture_.backDepth.image.at(x, y), capture_.backDepth.encoding);

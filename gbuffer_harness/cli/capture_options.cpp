@@ -105,8 +105,7 @@ void addCommonOptions(const Command& command, CaptureOptions& options) {
       "--material", options.presets,
       "of a scene: *=PRESET or *={a manifest's material}, for all objects; of a model, repeatable: "
       "NAME=PRESET, NAME={...}, NAME=thin:R,G,B (a thin wall's transmittance), NAME=opaque or NAME=none, "
-      "which "
-      "leaves it out; NAME * means all others");
+      "which leaves it out; NAME * means all others");
   command.option(
       "--light", options.lights,
       std::string("of a scene: directional, point or spot; of a model, repeatable: ") + kLightSyntax);

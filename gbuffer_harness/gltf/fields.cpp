@@ -56,7 +56,7 @@ const std::vector<GltfField>& gltfFields() {
       {"materials.*.pbrMetallicRoughness.metallicFactor,roughnessFactor", kNoEffect,
        "of specular light; a medium is no metal"},
       {"materials.*.normalTexture.index,texCoord,scale", kUsed},
-      {"materials.*.occlusionTexture.**", kNoEffect, "light that is traced has its own shadows"},
+      {"materials.*.occlusionTexture.**", kNoEffect, "the traced irradiance has the shadows of the mesh"},
       {"materials.*.emissiveFactor", kLeftOut, "its glow lights nothing; --light adds a light"},
       {"materials.*.emissiveTexture.**", kNoEffect, "multiplies emissiveFactor"},
 

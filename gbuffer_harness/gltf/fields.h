@@ -34,8 +34,8 @@ struct GltfExtension {
 };
 const std::vector<GltfExtension>& gltfExtensions();
 
-// A sentence for each kind of field and extension in the file that is not drawn as it asks, those that no
-// list has among them.
+// One sentence for each kind of field and extension in the file that is not drawn as the file asks, or that
+// neither list has.
 std::vector<std::string> unusedFields(const GltfJson& json);
 
 // Throws InputError for an extension that the file requires and that cannot be left out.

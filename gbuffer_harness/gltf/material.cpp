@@ -31,7 +31,7 @@ constexpr const char *kDiffuse = "KHR_materials_diffuse_transmission",
                      *kTransmission = "KHR_materials_transmission", *kVolume = "KHR_materials_volume",
                      *kVolumeScatter = "KHR_materials_volume_scatter", *kIor = "KHR_materials_ior";
 
-// Of the light: glass of more is left out, and of less is opaque.
+// Glass that transmits this part of the light or more is left out. Other glass is drawn opaque.
 constexpr double kMostlyClear = 0.5;
 
 // An attenuation color of 0 or 1 would be an infinite or no coefficient.
@@ -351,7 +351,7 @@ bool hasColor(const GltfMaterial& material) {
 // Words of --material in place of a medium.
 constexpr const char *kNoTriangles = "none", *kDrawnOpaque = "opaque";
 
-// Where half of what lies behind shows: coverage of hair cards and leaves is mostly 0 or 1.
+// Alpha below which a blended surface has a hole: the coverage of hair cards and leaves is mostly 0 or 1.
 constexpr double kBlendCutoff = 0.5;
 
 bool isEmissive(const tinygltf::Material& material) {

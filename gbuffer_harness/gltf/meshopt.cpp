@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-// Of an attribute's bytes; the encoder takes no more.
+// Largest byteStride of an attribute that the encoder takes.
 constexpr std::size_t kMostStride = 256;
 
 }  // namespace

@@ -56,7 +56,7 @@ Image specular(const Capture& c) {
   return held;
 }
 
-// What the output holds may be below 0: the sum is clamped, and not its parts.
+// Held colors may be below 0: the output is the clamped sum, and no part is clamped before.
 TEST_F(EngineFrames, HeldColorsBelowZeroTakeFromTheSum) {
   const Capture c = flatCapture(16, 8);
   ReplaySettings s = inFloats(0);

@@ -180,7 +180,7 @@ TEST_F(Motion, LightThatChangesDoesNotLinger) {
   }
 }
 
-// What a history holds at first is nobody's light: neither around the rect nor where a frame had no material.
+// No frame wrote the bytes that a fresh history holds: they bring no light around the rect, or where a frame had no material.
 TEST_F(Motion, BytesOfAFreshHistoryAreNotRead) {
   const Capture& c = ball();
   Capture part = c;  // pixels that lose their material, by groups of the filter

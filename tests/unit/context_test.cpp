@@ -27,7 +27,7 @@ void* operator new(size_t size, const std::nothrow_t&) noexcept {
     return nullptr;
   }
 }
-// Of its own, as sanitizers tell what delete[] frees from what delete does.
+// new[] does not call new here: sanitizers tell what delete[] frees from what delete frees.
 void* operator new[](size_t size, const std::nothrow_t&) noexcept {
   if (failingNew >= 0 && failingNew-- == 0) return nullptr;
   try {
