@@ -22,8 +22,8 @@ using namespace harness;
 namespace {
 
 constexpr int kPathSize = 512, kPathFrames = 24;  // as docs/accuracy.md has them
-constexpr int kPixels[] = {1, 5};         // of moves of the whole frame
-constexpr int kStill = 16;                // frames before a move
+constexpr int kPixels[] = {1, 5};                 // of moves of the whole frame
+constexpr int kStill = 16;                        // frames before a move
 constexpr const char* kPublished[] = {"Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"};
 
 // Frames in their order in, images out.
@@ -94,8 +94,9 @@ private:
     settings.anchor = visibleMiddle(still_);
     change(settings);
     const auto sequence = std::make_shared<ReplaySequence>(device_);
-    return {"Pellucid, " + name,
-            [=, this](const Capture& capture) { return rgb(sequence->run(capture, materials_, settings)); }};
+    return {"Pellucid, " + name, [=, this](const Capture& capture) {
+              return rgb(sequence->run(capture, materials_, settings).output);
+            }};
   }
 
   Method published(const std::string& name) {
@@ -104,8 +105,8 @@ private:
                   std::make_shared<BenchFrame>(device_, context_, capture, materials_,
                                                transmittanceSettings(), nullptr, normalsOf(device_, capture));
               const std::vector<WholeFrame> all = fastestWholeFrames(frame);
-              const auto found =
-                  std::find_if(all.begin(), all.end(), [&](const WholeFrame& w) { return w.variant.name == name; });
+              const auto found = std::find_if(all.begin(), all.end(),
+                                              [&](const WholeFrame& w) { return w.variant.name == name; });
               device_.run(found->variant.record);
               return found->variant.output();
             }};
@@ -114,8 +115,7 @@ private:
   // With histories that are empty.
   std::vector<Method> methods() {
     std::vector<Method> all = {
-        ours("no anchor", [](ReplaySettings& s) { s.anchor = {}; }),
-        ours("anchor", [](ReplaySettings&) {}),
+        ours("no anchor", [](ReplaySettings& s) { s.anchor = {}; }), ours("anchor", [](ReplaySettings&) {}),
         ours("accumulated", [](ReplaySettings& s) { s.reuse = PELLUCID_REUSE_ACCUMULATE; }),
         ours("no gather", [](ReplaySettings& s) { s.translucency.gatherSamples = 0; }),
         ours("64 samples", [](ReplaySettings& s) { s.translucency.gatherSamples = 64; })};
@@ -127,10 +127,11 @@ private:
     const Flicker all = flickerOf(steps);
     const auto &rmse = all.relativeRmse, &p999 = all.p999;
     char text[120];
-    std::snprintf(text, sizeof text, "  %-34s %.4f %.4f %.4f  %.3f %.3f %.3f", method.c_str(), rmse[0], rmse[1], rmse[2],
-                  p999[0], p999[1], p999[2]);
+    std::snprintf(text, sizeof text, "  %-34s %.4f %.4f %.4f  %.3f %.3f %.3f", method.c_str(), rmse[0],
+                  rmse[1], rmse[2], p999[0], p999[1], p999[2]);
     report_.note(text);
-    report_.record({{"kind", "path"}, {"change", change}, {"name", method}, {"flicker_rgb", rmse}, {"p999_rgb", p999}});
+    report_.record(
+        {{"kind", "path"}, {"change", change}, {"name", method}, {"flicker_rgb", rmse}, {"p999_rgb", p999}});
   }
 
   Device& device_;
@@ -141,13 +142,16 @@ private:
   std::vector<PellucidMaterial> materials_;
 };
 
-// A frame that goes on with the history of the one before, which is the same frame, beside one without a history.
-void timeAccumulation(Device& device, const Context& context, const FrameSource& source, int repeat, Report& report) {
+// A frame that goes on with the history of the one before, which is the same frame, beside one without a
+// history.
+void timeAccumulation(Device& device, const Context& context, const FrameSource& source, int repeat,
+                      Report& report) {
   Capture capture = source.make();
   capture.albedo = {};
-  capture.motion = Image(capture.width, capture.height, 4);
+  capture.motion = Image(capture.width, capture.height, 2);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-  const std::string frame = source.name + ", " + std::to_string(capture.width) + "x" + std::to_string(capture.height);
+  const std::string frame =
+      source.name + ", " + std::to_string(capture.width) + "x" + std::to_string(capture.height);
   ReplaySettings settings;
   settings.translucency.gatherSamples = kDefaultGatherSamples;
   settings.anchor = visibleMiddle(capture);
@@ -156,17 +160,25 @@ void timeAccumulation(Device& device, const Context& context, const FrameSource&
     const FrameRun first(device, context, capture, materials, settings);
     device.run([&](VkCommandBuffer commandBuffer) { first.record(commandBuffer); });
     const FrameRun next(device, context, capture, materials, settings, &first);
-    const Time time = measure(device, repeat, [&](VkCommandBuffer commandBuffer) { next.record(commandBuffer); });
-    report.add({frame + (accumulates ? ", accumulated" : ", anchor"), next.plan().dispatchCount, next.plan().barrierCount, 0,
-                {}, {{"kind", "accumulation"}, {"accumulates", accumulates}, {"frame", source.name},
-                     {"size", std::to_string(capture.width) + "x" + std::to_string(capture.height)}}},
+    const Time time =
+        measure(device, repeat, [&](VkCommandBuffer commandBuffer) { next.record(commandBuffer); });
+    report.add({frame + (accumulates ? ", accumulated" : ", anchor"),
+                next.plan().dispatchCount,
+                next.plan().barrierCount,
+                0,
+                {},
+                {{"kind", "accumulation"},
+                 {"accumulates", accumulates},
+                 {"frame", source.name},
+                 {"size", std::to_string(capture.width) + "x" + std::to_string(capture.height)}}},
                time);
   }
 }
 
 }  // namespace
 
-void measurePaths(Device& device, const Context& context, const FrameOptions& options, int repeat, Report& report) {
+void measurePaths(Device& device, const Context& context, const FrameOptions& options, int repeat,
+                  Report& report) {
   report.section("along paths: RMSE R G B, 99.9 % R G B", "paths");
   const DrawnModel drawn = portrait(device, options, kPathSize);
   PathBench bench(device, context, drawn, report);

@@ -140,53 +140,6 @@ float tangentPlaneWeight(TangentPlane plane, float off, vec2 x, vec2 falloff) {
   return rest * rest;
 }
 
-// The i-th of the four quads of level 1 around a pixel with a material, its own first: their weights are those of linear interpolation.
-struct QuadBeside {
-  Texel texel;
-  float off; // depth of the pixel from the quad's plane
-};
-
-// `front`: of the pixel; `size`: of a pixel there. pyramidImage holds level 1.
-QuadBeside quadBeside(ivec2 pixel, int i, float front, vec2 size) {
-  ivec2 quad = (pixel >> 1) + (2 * (pixel & 1) - 1) * ivec2(i & 1, i >> 1);
-  // The pixel's own quad has been written, as the pixel has a material.
-  Texel t = unpackTexel(i == 0 ? texelFetch(pyramidImage, inAtlas(1u, quad), 0) : writtenQuad(quad, false));
-  return QuadBeside(t, front - t.depth - dot(t.slope, (vec2(pixel) - pixelOf(1u, quad)) * size));
-}
-
-// Unit normal, towards the eye, of the surface that a pixel shows: that of the quad whose plane is nearest to the pixel. `front`,
-// `material`: of the pixel.
-vec3 normalOfPixel(ivec2 pixel, float front, uint material) {
-  vec2 size = texelSize(front, 0u), ray = facingRayAt(vec2(pixel)), slope = vec2(0.0);
-  float least = kNoDepth;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    QuadBeside q = quadBeside(pixel, i, front, size);
-    float off = abs(q.off);
-    if (q.texel.area == 0.0 || q.texel.material != material || off >= least) continue;
-    least = off;
-    slope = q.texel.slope;
-    if (off * off * inverseSpread(slope, ray, size) < 1.0) break; // within a pixel's side
-  }
-  return normalOfSlope(slope, ray);
-}
-
-// Unit normal, towards the eye, of the surface that a pixel shows: linear between the quads around it, as far as they lie on one
-// surface with the pixel. `front`, `material`: of the pixel.
-vec3 normalBetween(ivec2 pixel, float front, uint material) {
-  vec2 size = texelSize(front, 0u), ray = facingRayAt(vec2(pixel));
-  vec3 sum = vec3(0.0);
-  float total = 0.0;
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    QuadBeside q = quadBeside(pixel, i, front, size);
-    Texel t = q.texel;
-    float w = ((i & 1) == 0 ? 0.75 : 0.25) * (i < 2 ? 0.75 : 0.25) * exp2(-q.off * q.off * inverseSpread(t.slope, ray, size));
-    w = t.area != 0.0 && t.material == material ? w + 1.0e-6 : 0.0;
-    sum += w * normalOfSlope(t.slope, ray);
-    total += w;
-  }
-  return total > 0.0 ? normalize(sum) : normalOfSlope(vec2(0.0), ray); // the normals are within 90 degrees of the ray
-}
-
 // Texels around lie on a texel's plane up to this part of its squared side: kPixelFalloff then weights them with .9 at least.
 const float kPlaneOffset = 0.1;
 

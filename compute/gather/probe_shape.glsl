@@ -3,11 +3,10 @@
 #define PELLUCID_PROBE_SHAPE_GLSL
 
 #include "diffusion/texel.glsl"
+#include "frame/surface_images.glsl"
 #include "gather/probe.glsl"
 #include "gather/probe_light.glsl"
 #include "lib/surface.glsl"
-
-layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
 // Step from a probe to a quad beside it.
 struct Beside {
@@ -33,21 +32,24 @@ Beside acrossOf(Beside forward, Beside backward) {
   return Beside(vec4(f * forward.apart.xyz - b * backward.apart.xyz, max(f, b)), f * forward.turn - b * backward.turn);
 }
 
-// Steps in pixels that reach `reach` mm on the surface's tangent plane, and a quad at least: then that is the reach.
-ivec2 stepsOf(Surface x, ViewRay ray, float front, inout float reach) {
+// Steps in pixels that reach `reach` mm on the surface's tangent plane, and a quad at least: then that is the reach. `known`: 1, down to
+// 0 where the reach was less than a pixel's side, which no pixel tells.
+ivec2 stepsOf(Surface x, ViewRay ray, float front, inout float reach, out float known) {
   Camera c = frame.camera;
   vec3 sideX = vec3(c.rayX.zw + front * c.rayX.xy, 0.0), sideY = vec3(c.rayY.zw + front * c.rayY.xy, 0.0);
   float facing = min(dot(x.normal, ray.direction), -0.1); // planes seen edge-on would have no end; any small value will do
   sideX -= ray.direction * (dot(x.normal, sideX) / facing);
   sideY -= ray.direction * (dot(x.normal, sideY) / facing);
   vec2 size = sqrt(vec2(dot(sideX, sideX), dot(sideY, sideY))) * c.range.w;
+  known = clamp(reach / max(max(size.x, size.y), 1.0e-30), 0.0, 1.0);
   reach = max(reach, 2.0 * max(size.x, size.y));
   return ivec2(clamp(reach / max(size, vec2(1.0e-30)) + 0.5, vec2(2.0), vec2(1.0e4)));
 }
 
 // Mean curvature of the surface around x, 1/mm, positive where convex; 0 where it does not go on.
 float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reach) {
-  ivec2 steps = stepsOf(x, ray, front, reach);
+  float known;
+  ivec2 steps = stepsOf(x, ray, front, reach, known);
   Beside a, b = Beside(vec4(0.0), vec3(0.0));
   [[dont_unroll]] for (int axis = 0; axis < 2; ++axis) {
     ivec2 step = axis == 0 ? ivec2(steps.x, 0) : ivec2(0, steps.y);
@@ -58,7 +60,7 @@ float meanCurvature(ivec2 pixel, Surface x, ViewRay ray, float front, float reac
   float area = dot(x.normal, cross(a.apart.xyz, b.apart.xyz));
   float least = 0.1 * sqrt(dot(a.apart.xyz, a.apart.xyz) * dot(b.apart.xyz, b.apart.xyz));
   float trace = dot(x.normal, cross(a.turn, b.apart.xyz) + cross(a.apart.xyz, b.turn));
-  return abs(area) > least ? a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
+  return abs(area) > least ? known * a.apart.w * b.apart.w * 0.5 * trace / area : 0.0;
 }
 
 // Back face of a pixel.
@@ -125,7 +127,9 @@ float thicknessAt(ivec2 pixel, Surface x) {
   float squared = dot(n, n);
   if (known && squared > 0.0) normal = n * (dot(n, x.view) < 0.0 ? -inversesqrt(squared) : inversesqrt(squared));
   float opposite = 0.5 - 0.5 * dot(x.normal, normal);
-  float h = 0.5 * chord * frame.camera.range.w * (abs(dot(ray, x.normal)) + abs(dot(ray, normal))) / max(opposite, 0.01);
+  // Pixels do not tell steeper faces, as of limbs of one pixel.
+  float cosines = max(abs(dot(ray, x.normal)), kLeastCosine) + max(abs(dot(ray, normal)), kLeastCosine);
+  float h = 0.5 * chord * frame.camera.range.w * cosines / max(opposite, 0.01);
   return isWithin(h, 0.0, kThick) ? h : kThick;
 }
 

@@ -31,8 +31,10 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
   uint m = place.material - 1u;
   ivec2 pixel = pixelInCell(cell, side, place.index);
   ViewRay ray = viewRay(frame.camera, pixel);
-  place.normal = normalBetween(pixel, place.front, place.material);
-  Surface x = Surface(ray.origin + place.front * ray.direction, place.normal, normalize(ray.direction), -1.0, place.material);
+  vec3 view = normalize(ray.direction);
+  place.normal = facetAt(inImage(pixel), place.material, place.front, false);
+  if (place.normal == vec3(0.0)) place.normal = -view;
+  Surface x = Surface(ray.origin + place.front * ray.direction, place.normal, view, -1.0, place.material);
   BodyFactors body = bodyAt(pixel, x, ray, place.front, m);
   // Packed before lights are gathered, whose sums need the registers.
   uvec4 bits = withReturned(packPlace(place), body.returned - 1.0);

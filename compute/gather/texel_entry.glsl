@@ -3,9 +3,9 @@
 #define PELLUCID_TEXEL_ENTRY_GLSL
 
 #define MORE_SHADOW_IMAGES
-#include "diffusion/texel.glsl"
-#include "gather/entry_point.glsl"
 #include "frame/shadow_images.glsl"
+#include "frame/surface_images.glsl"
+#include "gather/entry_point.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
@@ -37,8 +37,6 @@ MapPoint pointOf(EntryMapConstants map, ivec2 texel, float stored) {
   return MapPoint(map.ray.xyz + depth * at.xyz, abs(depth) < kNoDepth ? depth : kNoDepth);
 }
 
-layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
-
 // ---- What the camera shows, and what that hides
 
 // The surface at the pixel of a point: the front that the camera shows, or the back that the front hides.
@@ -49,19 +47,6 @@ struct PixelSurface {
   vec3 normal;  // unit, outward
   float above;  // how far the point lies before the surface, along its normal
 };
-
-// Planar distance of the back of a pixel with a material; -1: none.
-float backAt(ivec2 pixel, uint material) {
-  ivec2 at = inImage(withinRect(pixel));
-  return insideRect(pixel) && materialAt(at) == material ? backDistanceOf(texelFetch(backDepthImage, at, 0).x) : -1.0;
-}
-
-// Unit normal, outward, of the back of a pixel; 0: not known.
-vec3 normalOfBack(ivec2 pixel, float back, uint material) {
-  vec4 beside = vec4(backAt(pixel + ivec2(1, 0), material), backAt(pixel - ivec2(1, 0), material),
-                     backAt(pixel + ivec2(0, 1), material), backAt(pixel - ivec2(0, 1), material));
-  return -normalOfDepths(frame.camera, pixel, back, beside);
-}
 
 // Planar distance of the surface that goes on under a pixel of hair, as alpha hashing and dithering draw it: the pixels to both sides
 // have one material. The less steep of the two axes counts. -1: there is no such surface. `beside`: one of the two pixels.
@@ -92,15 +77,17 @@ PixelSurface surfaceUnder(vec3 position, bool hidden) {
   // A pixel without material shows nothing, whatever depth it holds, as its light is not diffused. The light of skin under single
   // pixels of hair is, as pixels around stand for them.
   uint material = materialAt(inImage(pixel));
-  float depth = hidden ? backAt(pixel, material) : frontDistance(inImage(pixel));
+  float depth = hidden ? distanceOf(inImage(pixel), material, true) : frontDistance(inImage(pixel));
   ivec2 of = pixel;
   if (!hidden && material == 0u && depth > 0.0) {
     float skin = frontUnderHair(pixel, of, material);
     depth = skin >= depth ? skin : -1.0; // through a gap, what lies behind is seen
   }
   if (material == 0u || !(depth > 0.0)) return s;
-  s.normal = hidden ? normalOfBack(pixel, depth, material) : normalOfPixel(of, depth, material);
-  if (s.normal == vec3(0.0)) return s;
+  float own = of == pixel ? depth : frontDistance(inImage(of)); // not the mean that stands for hair
+  vec3 towardsEye = facetAt(inImage(of), material, own, hidden);
+  if (towardsEye == vec3(0.0)) return s;
+  s.normal = hidden ? -towardsEye : towardsEye;
   s.depth = depth;
   ViewRay ray = viewRay(frame.camera, pixel);
   s.above = dot(s.normal, position - ray.origin - depth * ray.direction);

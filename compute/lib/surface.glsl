@@ -32,20 +32,26 @@ vec3 nearerStep(vec4 forwards, vec4 backwards) {
   return b < f ? mix(backwards.xyz, forwards.xyz, far) : mix(forwards.xyz, backwards.xyz, far);
 }
 
-// From a pixel of planar distance `front` along an axis of the image. `step`: Camera::rayX or rayY; `direction`: of the pixel's
-// ray; `beside`: distances of the neighbors forwards and backwards, <= 0 where there is none.
+// Step along an axis of the image on the surface of a pixel of planar distance `front`; where no neighbor says, that of a facing
+// surface. `step`: Camera::rayX or rayY; `direction`: of the pixel's ray; `beside`: distances of the neighbors forwards and
+// backwards, <= 0 where there is none.
 vec3 alongDepth(vec4 step, vec3 direction, float front, vec2 beside) {
-  vec2 changes = mix(vec2(kFarthest), vec2(1.0, -1.0) * (beside - front), greaterThan(beside, vec2(0.0)));
-  float change = nearerStep(changes.x, changes.y);
-  float planar = abs(changes.y) < abs(changes.x) ? front - change : front + change;
-  return change * direction + vec3(step.zw + planar * step.xy, 0.0);
+  bvec2 there = greaterThan(beside, vec2(0.0));
+  if (!any(there)) return vec3(step.zw + front * step.xy, 0.0);
+  vec3 forwards = (beside.x - front) * direction + vec3(step.zw + beside.x * step.xy, 0.0);
+  vec3 backwards = (front - beside.y) * direction + vec3(step.zw + beside.y * step.xy, 0.0);
+  return nearerStep(vec4(forwards, there.x ? 1.0 : 0.0), vec4(backwards, there.y ? 1.0 : 0.0));
 }
 
 // Unit normal towards the eye of the surface that the depths show; 0 where they show none. `beside`: distances of the pixels
 // to the right, to the left, below and above.
 vec3 normalOfDepths(Camera camera, ivec2 pixel, float front, vec4 beside) {
   vec3 direction = viewRay(camera, pixel).direction;
-  vec3 normal = cross(alongDepth(camera.rayX, direction, front, beside.xy), alongDepth(camera.rayY, direction, front, beside.zw));
+  vec3 a = alongDepth(camera.rayX, direction, front, beside.xy), b = alongDepth(camera.rayY, direction, front, beside.zw);
+  // In steps of about 1, whose products keep within floats in any unit.
+  vec3 most = max(abs(a), abs(b));
+  float scale = 1.0 / max(max(most.x, max(most.y, most.z)), 1.0e-30);
+  vec3 normal = cross(scale * a, scale * b);
   float squared = dot(normal, normal);
   if (!(squared > 0.0)) return vec3(0.0);
   normal *= inversesqrt(squared);

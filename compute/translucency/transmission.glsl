@@ -24,22 +24,19 @@ bool mayUse(uint use) { return true; }
 #else
 #include "frame/frame.glsl"
 #include "frame/shadow_images.glsl"
+#include "frame/surface_images.glsl"
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
-layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 layout(set = 0, binding = PELLUCID_BINDING_HIDDEN_IRRADIANCE) uniform texture2D hiddenIrradianceImage;
 
 // False of options that no frame of the context has.
 layout(constant_id = PELLUCID_CONSTANT_USES) const uint kUses = 0xFFFFFFFFu;
 bool mayUse(uint use) { return (kUses & use) != 0u; }
 
-float distanceOf(ivec2 pixel, uint material, bool back) {
-  if (!insideRect(inLattice(pixel)) || materialAt(pixel) != material) return -1.0;
-  return back ? backDistanceOf(texelFetch(backDepthImage, pixel, 0).x) : frontDistance(pixel);
-}
-
 vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
 #endif
+
+#include "lib/facet.glsl"
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
 bool isThinWalled(uint material) {
@@ -181,32 +178,10 @@ LightTexels lightTexels(LightConstants light, Incident incident, uint material, 
   return lightTexels(shadow, projectReceiver(shadow, x), incident, material, x, cosine, farthest);
 }
 
-// The i-th of the four pixels beside a pixel: right, left, below, above.
-ivec2 pixelBeside(ivec2 pixel, int i) {
-  int side = 1 - 2 * (i & 1);
-  return pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
-}
-
-// Unit normal of the front or back depths, towards the eye; 0: not known.
-vec3 facetAt(ivec2 pixel, uint material, bool back) {
-  vec4 beside;
-  float own = distanceOf(pixel, material, back);
-  if (!(own > 0.0)) return vec3(0.0);
-  [[dont_unroll]] for (int i = 0; i < 4; ++i) {
-    ivec2 next = pixelBeside(pixel, i);
-    beside[i] = distanceOf(next, material, back);
-    if (beside[i] > 0.0) continue;
-    // Single pixels of hair lie between pixels of the surface.
-    float beyond = distanceOf(pixelBeside(next, i), material, back);
-    if (beyond > 0.0) beside[i] = mix(own, beyond, 0.5);
-  }
-  return normalOfDepths(frame.camera, inLattice(pixel), own, beside);
-}
-
 // The surface of a pixel, whose normal follows from the depths around. `planar`: distance of the front; `chord`: as Surface has
 // it; `material`: index + 1.
 Surface surfaceOf(ivec2 pixel, ViewRay ray, float planar, float chord, uint material) {
-  vec3 view = normalize(ray.direction), normal = facetAt(pixel, material, false);
+  vec3 view = normalize(ray.direction), normal = facetAt(pixel, material, planar, false);
   if (normal == vec3(0.0)) normal = -view;
   return Surface(ray.origin + planar * ray.direction, normal, view, chord, material);
 }
@@ -346,7 +321,9 @@ struct HiddenFace {
 HiddenFace hiddenFace(Surface s, ivec2 pixel) {
   // A stored thickness is that of a slab.
   if (hasFlag(PELLUCID_FLAG_BACK_THICKNESS)) return HiddenFace(s.position - s.chord * s.normal, -s.normal, s.chord, 1.0);
-  vec3 facet = facetAt(pixel, s.material, true), front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
+  float own = distanceOf(pixel, s.material, true);
+  vec3 facet = own > 0.0 ? facetAt(pixel, s.material, own, true) : vec3(0.0);
+  vec3 front = s.normal, back = facet == vec3(0.0) ? -front : -facet;
   float thickness = 0.5 * chordBeside(s, pixel) * (abs(dot(front, s.view)) + abs(dot(back, s.view)));
   // A rim has all of the medium behind it. Depths do not tell the normal of a face that is seen at less than some 20 degrees.
   const float kPerCosine = 3.0; // 1 / sin(20 degrees)

@@ -126,8 +126,8 @@ struct Capture {
   DepthImage backDepth;
   Image irradiance;        // RGB; required
   Image hiddenIrradiance;  // RGB; of light from all around where backDepth lies
-  // RG: what a surface's place in the image has changed by since an earlier frame, in parts of width and height; empty: nothing
-  // moved. Manifests do not hold it.
+  // RG: what a surface's place in the image has changed by since the frame before, in parts of width and
+  // height; empty: nothing moved.
   Image motion;
   Image albedo;                        // RGB
   std::vector<std::uint8_t> material;  // required; 0 none, i: materials[i - 1]

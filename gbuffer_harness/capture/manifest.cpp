@@ -365,8 +365,8 @@ std::optional<BufferSource> readTimes(const Field& light, const BufferReader& re
 }
 
 void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manifest) {
-  buffers.allowKeys(
-      {"frontDepth", "backDepth", "irradiance", "hiddenIrradiance", "normal", "albedo", "material"});
+  buffers.allowKeys({"frontDepth", "backDepth", "irradiance", "hiddenIrradiance", "motion", "normal",
+                     "albedo", "material"});
   const auto depth = [&](const Field& field, DepthImage& image, const std::vector<std::string>& encodings) {
     field.allowKeys({"file", "part", "channel", "encoding", "constant", "scale"});
     image.encoding = static_cast<PellucidDepthEncoding>(field["encoding"].choice(encodings));
@@ -390,6 +390,11 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
     field->allowKeys({"file", "part", "channels", "constant", "scale"});
     if (!manifest.backDepth) field->fail("needs the buffer \"backDepth\", where the light arrives");
     manifest.hiddenIrradiance = read(*field, 3);
+  }
+  if (const auto field = buffers.find("motion")) {
+    field->allowKeys({"file", "part", "channels", "constant", "motionScale"});
+    manifest.motion = read(*field, 2);
+    if (const auto scale = field->find("motionScale")) manifest.motionScale = scale->numbers<2>();
   }
   if (const auto field = buffers.find("albedo")) {
     field->allowKeys({"file", "part", "channels", "constant", "scale"});

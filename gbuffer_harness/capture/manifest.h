@@ -52,7 +52,8 @@ struct Manifest {
   Capture capture;  // everything but the images and the size
 
   BufferSource frontDepth, irradiance, material;
-  std::optional<BufferSource> backDepth, hiddenIrradiance, albedo, truth, truthStandardError;
+  std::optional<BufferSource> backDepth, hiddenIrradiance, motion, albedo, truth, truthStandardError;
+  std::array<double, 2> motionScale = {1, 1};               // by which reading multiplies the motion
   std::optional<BufferSource> irradianceTimes, truthTimes;  // by which reading multiplies the other
   std::vector<std::vector<ShadowSources>> shadowMaps;       // per light, as Light::shadowMaps
   MaterialMap materialMap;

@@ -191,12 +191,14 @@ void requirePositive(const BufferSource& source, const DepthImage& depth) {
       std::none_of(values.begin(), values.end(), [&](float v) { return within(-v); }))
     return;
   throw InputError(source.file.string(), source.field,
-                   isThickness ? "holds no thickness from 0 on but negative ones; a thickness is in mm, and \"scale\" gives the mm of 1"
-                               : "holds no depth above 0 but negative ones; give \"scale\": -1, as depths are positive in front of the eye");
+                   isThickness ? "holds no thickness from 0 on but negative ones; a thickness is in mm, and "
+                                 "\"scale\" gives the mm of 1"
+                               : "holds no depth above 0 but negative ones; give \"scale\": -1, as depths "
+                                 "are positive in front of the eye");
 }
 
-// View z of distances from the eye along the ray. A direction (x, y, -1) whose ray meets the pixel is a solution of two
-// linear equations: its clip x and y are those of the pixel times its clip w.
+// View z of distances from the eye along the ray. A direction (x, y, -1) whose ray meets the pixel is a
+// solution of two linear equations: its clip x and y are those of the pixel times its clip w.
 void toViewZ(const Matrix& clipFromView, DepthImage& depth) {
   const auto clip = [&](std::size_t row, std::size_t column) { return clipFromView[4 * column + row]; };
   for (int y = 0; y < depth.image.height; ++y)
@@ -248,6 +250,7 @@ Capture readImages(const Manifest& manifest) {
   loader.want(manifest.irradiance, capture.irradiance, 3, 0, true);
   if (manifest.hiddenIrradiance)
     loader.want(*manifest.hiddenIrradiance, capture.hiddenIrradiance, 3, 0, true);
+  if (manifest.motion) loader.want(*manifest.motion, capture.motion, 2, 0, true);
   if (manifest.albedo) loader.want(*manifest.albedo, capture.albedo, 3, 0, true);
   loader.want(manifest.material, material, 1, kOutside, true);
   if (manifest.truth) loader.want(*manifest.truth, capture.truth->image, 3, 0, true);
@@ -275,6 +278,8 @@ Capture readImages(const Manifest& manifest) {
     if (depth->encoding == PELLUCID_DEPTH_DISTANCE) toViewZ(capture.clipFromView, *depth);
 
   multiply(capture.irradiance, irradianceTimes);
+  for (std::size_t i = 0; i < capture.motion.data.size(); ++i)
+    capture.motion.data[i] *= static_cast<float>(manifest.motionScale[i % 2]);
   if (capture.truth) multiply(capture.truth->image, truthTimes);
 
   auto tile = casters.begin();

@@ -134,6 +134,8 @@ void writeCapture(const Capture& capture, const std::filesystem::path& exr, Colo
   buffers["irradiance"] = screen.add(capture.irradiance, "irradiance", "RGB", format);
   if (!capture.hiddenIrradiance.empty())
     buffers["hiddenIrradiance"] = screen.add(capture.hiddenIrradiance, "hidden", "RGB", format);
+  if (!capture.motion.empty())
+    buffers["motion"] = screen.add(capture.motion, "motion", "XY", ExrFormat::Float);
   if (!capture.albedo.empty()) buffers["albedo"] = screen.add(capture.albedo, "albedo", "RGB", format);
   buffers["material"] = screen.add(material, "material", "I", ExrFormat::Uint);
   if (capture.truth) manifest["truth"] = truthJson(*capture.truth, screen, format);

@@ -19,6 +19,7 @@
 #include "common/whole_file.h"
 #include "raster/bodies.h"
 #include "raster/framing.h"
+#include "reference/camera_motion.h"
 #include "scene/scene.h"
 #include "scene/turn.h"
 
@@ -42,6 +43,7 @@ struct Options {
 struct CaptureFrame {
   std::filesystem::path output;
   Turn turn;
+  double step = 0;  // the camera's turn since the frame before, radians
 };
 
 void printScenes() {
@@ -81,7 +83,8 @@ std::vector<CaptureFrame> framesOf(const Turntable& options, const std::string& 
   for (const int frame :
        parseFrames(options.frames.empty() ? "1-" + std::to_string(turns) : options.frames)) {
     if (frame < 1) throw UsageError("--frames: a turntable begins at frame 1");
-    frames.push_back({output(frame), turnAt(options, frame)});
+    const Turn turn = turnAt(options, frame), before = turnAt(options, frame - 1);
+    frames.push_back({output(frame), turn, turn.camera.value_or(0) - before.camera.value_or(0)});
   }
   return frames;
 }
@@ -93,13 +96,20 @@ void warnOfThinBodies(const Capture& capture, const std::filesystem::path& file)
     warn({file.string() + ": " + sentence});
 }
 
+// Of the frame before in a turntable, which need not be drawn.
+void addMotion(const CaptureFrame& frame, const Vector3& center, Capture& capture) {
+  const Matrix before = turnedView(capture.viewFromWorld, center, -frame.step);
+  capture.motion = reference::CameraMotion(capture, capture.clipFromView, before).image();
+}
+
 void captureProcedural(const Options& options) {
   SceneParameters scene = procedural(options.scene);
   const std::vector<CaptureFrame> frames = framesOf(options.turntable, options.output);
   Progress progress("capturing", frames.size());
   for (const CaptureFrame& frame : frames) {
     scene.turn = frame.turn;
-    const Capture capture = captureScene(scene, options.scene);
+    Capture capture = captureScene(scene, options.scene);
+    if (frame.step != 0) addMotion(frame, sceneCenter(scene), capture);
     if (&frame == &frames.front()) warnOfThinBodies(capture, frame.output);
     writeWhole(frame.output, [&](const auto& file) { writeCapture(capture, file); });
     progress.advance();
@@ -128,9 +138,10 @@ void captureGltf(const Options& options) {
     turned.viewFromWorld = turnedView(scene.camera.viewFromWorld, center, frame.turn.camera.value_or(0));
     for (std::size_t i = 0; i < still.size(); ++i)
       scene.model.lights[i] = turnedLight(still[i], center, frame.turn.lights.value_or(0));
-    const RasterResult result = captureScene(device, scene.model, turned, scene.raster, sky);
+    RasterResult result = captureScene(device, scene.model, turned, scene.raster, sky);
     for (const std::string& warning : result.warnings)
       if (said.insert(warning).second) warn({frame.output.string() + ": " + warning});
+    if (frame.step != 0) addMotion(frame, center, result.capture);
     if (&frame == &frames.front()) warnOfThinBodies(result.capture, frame.output);
     writeWhole(frame.output, [&](const auto& file) { writeCapture(result.capture, file); });
     progress.advance();

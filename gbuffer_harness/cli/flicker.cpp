@@ -209,8 +209,8 @@ private:
   std::vector<Image> results_, differences_;
 };
 
-void measurePaths(const Options& options, const Frames& frames, const ReplaySettings& settings, Device& device,
-                  std::vector<Row>& rows) {
+void measurePaths(const Options& options, const Frames& frames, const ReplaySettings& settings,
+                  Device& device, std::vector<Row>& rows) {
   const std::optional<Environment> sky = environment(options.scene);
   const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
   for (const std::string& name : split(options.paths, ',')) {
@@ -228,7 +228,7 @@ void measurePaths(const Options& options, const Frames& frames, const ReplaySett
       const std::vector<Flicker> step = flicker.next(
           captureScene(device, model, pose.camera, frames.scene->raster, sky).capture, pose.switches,
           [&](const Capture& capture) {
-            return std::vector{rgb(sequence.run(capture, materials, settings)), capture.irradiance};
+            return std::vector{rgb(sequence.run(capture, materials, settings).output), capture.irradiance};
           },
           &difference);
       if (!step.empty()) {
@@ -350,15 +350,16 @@ void addFlickerCommand(const Command& app) {
       .option("--light-degrees", options->lightDegrees,
               "degrees by which lights turn; 0: none; a capture's lights stand still")
       .range(-10.0, 10.0);
-  const auto path = command.option(
-      "--path", options->paths,
-      "of a model: also follow these paths, with commas: " + pathSyntax() +
-          ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 %, and a blinking light each 6 "
-          "frames");
+  const auto path = command.option("--path", options->paths,
+                                   "of a model: also follow these paths, with commas: " + pathSyntax() +
+                                       ". Angles change by 0.5 degrees a frame, the distance of a dolly by 1 "
+                                       "%, and a blinking light each 6 "
+                                       "frames");
   command.option("--frames", options->frames, "of each path").range(2, 1000).needs(path);
   command
-      .option("--picture", options->picture,
-              "PNG to write: four frames of the path, and below each its change since the frame before, on gray")
+      .option(
+          "--picture", options->picture,
+          "PNG to write: four frames of the path, and below each its change since the frame before, on gray")
       .needs(path);
   command
       .option("--limit", options->limits,

@@ -64,7 +64,8 @@ Json imageJson(const BufferSource& source, const Image& image) {
   return json;
 }
 
-// The range of a screen depth is planar distance in scene units, whatever the encoding; that of a thickness is in mm.
+// The range of a screen depth is planar distance in scene units, whatever the encoding; that of a thickness
+// is in mm.
 Json depthJson(const BufferSource& source, const DepthImage& depth, const Camera& camera) {
   Json json = sourceJson(source);
   json["encoding"] = encodingName(depth.encoding);
@@ -73,7 +74,8 @@ Json depthJson(const BufferSource& source, const DepthImage& depth, const Camera
   for (const float value : depth.image.data) {
     const bool isThickness = depth.encoding == PELLUCID_DEPTH_THICKNESS;
     if (isThickness && !holdsThickness(value)) continue;
-    const auto planar = isThickness ? std::optional(double(value)) : camera.planarDepth(value, depth.encoding);
+    const auto planar =
+        isThickness ? std::optional(double(value)) : camera.planarDepth(value, depth.encoding);
     if (!planar) continue;
     ++surfaces;
     range.add(*planar);
@@ -192,7 +194,8 @@ private:
 
 void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::string>& sentences) {
   const bool hasBack = !capture.backDepth.image.empty();
-  std::size_t total = 0, noFront = 0, noBack = 0, noThickness = 0, reversed = 0, badIrradiance = 0, badAlbedo = 0;
+  std::size_t total = 0, noFront = 0, noBack = 0, noThickness = 0, reversed = 0, badIrradiance = 0,
+              badAlbedo = 0;
   for (int y = 0; y < capture.height; ++y) {
     for (int x = 0; x < capture.width; ++x) {
       if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
@@ -259,6 +262,7 @@ Json describe(const std::filesystem::path& path) {
   buffers["irradiance"] = imageJson(manifest.irradiance, capture.irradiance);
   if (manifest.hiddenIrradiance)
     buffers["hiddenIrradiance"] = imageJson(*manifest.hiddenIrradiance, capture.hiddenIrradiance);
+  if (manifest.motion) buffers["motion"] = imageJson(*manifest.motion, capture.motion);
   if (manifest.albedo) buffers["albedo"] = imageJson(*manifest.albedo, capture.albedo);
   buffers["material"] = sourceJson(manifest.material);
   buffers["material"]["pixels"] =

@@ -127,12 +127,12 @@ struct Replayed {
   std::optional<BlockMap> blocks;
 };
 
-Replayed runFrame(const Options& options, Replayer& replayer, const Capture& capture,
-                  const std::vector<PellucidMaterial>& materials, const ReplaySettings& settings,
-                  uint32_t repeat) {
+// `run`: of a Replayer or a sequence, with the look at the frame that it records.
+template <class Run>
+Replayed runFrame(const Options& options, const Run& run) {
   Replayed frame;
-  frame.result = replayer.run(capture, materials, settings, repeat, [&](const FrameRun& run) {
-    if (options.settings.showsBlocks()) frame.blocks = readBlockMap(run);
+  frame.result = run([&](const FrameRun& recorded) {
+    if (options.settings.showsBlocks()) frame.blocks = readBlockMap(recorded);
   });
   return frame;
 }
@@ -166,7 +166,8 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   Device device({options.device, false});
   Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
-  const Replayed frame = runFrame(options, replayer, capture, materials, settings, repeat);
+  const Replayed frame = runFrame(
+      options, [&](const auto& look) { return replayer.run(capture, materials, settings, repeat, look); });
   const ReplayResult& result = frame.result;
   print(device, result, repeat);
   if (result.preExposure != 1)
@@ -211,45 +212,63 @@ bool isFinished(const Options& options, const std::filesystem::path& output) {
                        "\" and not with these settings; --overwrite makes it again");
 }
 
-// Threads read, compile and write; one at a time has the device.
+// Threads read, compile and write; one at a time has the device. With settings.reuse frames follow in their
+// order, each with the history of the one before: frames finished before are replayed once more, as later
+// frames need their history.
 void replaySequence(const Options& options, const ReplaySettings& settings) {
   const FramePattern input("capture", options.input), output("-o", options.output);
   const std::vector<int> frames = options.frames.empty() ? input.existing() : parseFrames(options.frames);
   if (frames.empty()) throw InputError(options.input, "", "no file has such a name");
+  const bool keepsHistory = settings.reuse != PELLUCID_REUSE_NONE;
   Device device({options.device, false});
   Replayer replayer(device);
+  ReplaySequence sequence(device);
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;
   std::vector<int> missing;
   int skipped = 0;
-  parallelRows(static_cast<int>(frames.size()), options.jobs, [&](int i) {
+  // Whether the frame was replayed.
+  const auto replayFrame = [&](int frame) {
+    const bool finished = isFinished(options, output(frame));
+    const bool isThere = std::filesystem::exists(input(frame));
+    {
+      const std::scoped_lock lock(reportMutex);
+      if (finished) ++skipped;
+      if (!finished && !isThere) missing.push_back(frame);
+    }
+    if (!isThere || (finished && !keepsHistory)) return false;
+    const Capture capture = readCapture(input(frame));
+    const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+    requireNearestDistance(capture, materials, settings);
+    std::unique_lock lock(deviceMutex);
+    const Replayed replayed = runFrame(options, [&](const auto& look) {
+      return keepsHistory ? sequence.run(capture, materials, settings, look)
+                          : replayer.run(capture, materials, settings, 0, look);
+    });
+    lock.unlock();
+    if (!finished)
+      writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
+                 wantsPng(options, settings), options.exposure);
+    return true;
+  };
+  std::optional<int> last;  // of the history
+  parallelRows(static_cast<int>(frames.size()), keepsHistory ? 1 : options.jobs, [&](int i) {
     const int frame = frames[static_cast<std::size_t>(i)];
+    const auto fails = [&](const std::string& sentence) {
+      const std::scoped_lock lock(reportMutex);
+      failures[frame] = sentence;
+    };
+    // Motion vectors lead to the frame before, whose history there must be.
+    if (keepsHistory && last != frame - 1) sequence.cut();
     try {
-      if (isFinished(options, output(frame))) {
-        const std::scoped_lock lock(reportMutex);
-        ++skipped;
-      } else if (!std::filesystem::exists(input(frame))) {
-        const std::scoped_lock lock(reportMutex);
-        missing.push_back(frame);
-      } else {
-        const Capture capture = readCapture(input(frame));
-        const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-        requireNearestDistance(capture, materials, settings);
-        std::unique_lock lock(deviceMutex);
-        const Replayed replayed = runFrame(options, replayer, capture, materials, settings, 0);
-        lock.unlock();
-        writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
-                   wantsPng(options, settings), options.exposure);
-      }
+      if (replayFrame(frame) && keepsHistory) last = frame;
     } catch (const DeviceError&) {
       throw;  // the next frame would find the same device
     } catch (const std::bad_alloc&) {
-      const std::scoped_lock lock(reportMutex);
-      failures[frame] = "needs more memory than there is";
+      fails("needs more memory than there is");
     } catch (const std::exception& error) {
-      const std::scoped_lock lock(reportMutex);
-      failures[frame] = error.what();
+      fails(error.what());
     }
     progress.advance();
   });

@@ -72,8 +72,8 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
 
 namespace {
 
-// Statistics of the difference less its mean over the 5x5 pixels around, where all of these are of one surface and of
-// `both`, over `base`, of whose pixels `mask` counts.
+// Statistics of the difference less its mean over the 5x5 pixels around, where all of these are of one
+// surface and of `both`, over `base`, of whose pixels `mask` counts.
 Flicker measureUneven(const Image& before, const Image& after, const Surfaces& surfaces, const Mask& both,
                       const Image& base, const Mask& mask, Image* difference = nullptr) {
   constexpr int kSide = 2 * kSurroundings + 1;
@@ -107,26 +107,14 @@ Reprojection::Reprojection(const Capture& earlier, const Capture& later)
       later_(later),
       earlierSurfaces_(earlier),
       laterSurfaces_(later),
-      earlierCamera_(earlier.clipFromView, earlier.width, earlier.height),
-      laterCamera_(later.clipFromView, later.width, later.height),
-      earlierFromLater_(reference::toMatrix(earlier.viewFromWorld) *
-                        glm::inverse(reference::toMatrix(later.viewFromWorld))) {}
-
-// In the earlier camera's view space; none behind the earlier eye.
-std::optional<glm::dvec3> Reprojection::placeOf(int x, int y) const {
-  const std::optional<double> depth =
-      laterCamera_.planarDepth(*later_.frontDepth.image.at(x, y), later_.frontDepth.encoding);
-  if (!depth) return std::nullopt;
-  const glm::dvec3 place(earlierFromLater_ * glm::dvec4(laterCamera_.position({x + 0.5, y + 0.5}, *depth), 1));
-  if (!earlierCamera_.orthographic() && !(earlierCamera_.planarDepth(place) > 0)) return std::nullopt;
-  return place;
-}
+      motion_(later, earlier.clipFromView, earlier.viewFromWorld) {}
 
 std::optional<std::array<double, 3>> Reprojection::read(const Image& image, int x, int y) const {
-  const std::optional<glm::dvec3> place = placeOf(x, y);
+  const std::optional<glm::dvec3> place = motion_.earlierPlace(x, y);
   if (!place) return std::nullopt;
-  const double planar = earlierCamera_.planarDepth(*place);
-  const glm::dvec2 at = earlierCamera_.project(*place) - 0.5;
+  const reference::Camera& camera = motion_.earlierCamera();
+  const double planar = camera.planarDepth(*place);
+  const glm::dvec2 at = camera.project(*place) - 0.5;
   // Also where `at` is no number.
   if (!(at.x >= 0 && at.y >= 0 && at.x < image.width - 1 && at.y < image.height - 1)) return std::nullopt;
   const int left = static_cast<int>(at.x), top = static_cast<int>(at.y);
@@ -139,7 +127,7 @@ std::optional<std::array<double, 3>> Reprojection::read(const Image& image, int 
     const double weight = (i % 2 ? part.x : 1 - part.x) * (i / 2 ? part.y : 1 - part.y);
     // The block is wholly of surface: there is a depth.
     shown +=
-        weight * *earlierCamera_.planarDepth(*earlier_.frontDepth.image.at(px, py), earlier_.frontDepth.encoding);
+        weight * *camera.planarDepth(*earlier_.frontDepth.image.at(px, py), earlier_.frontDepth.encoding);
     for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * static_cast<double>(image.at(px, py)[c]);
   }
   // Another surface hides the place from the earlier camera.
@@ -166,21 +154,8 @@ Flicker Reprojection::compare(const Image& earlier, const Image& later, Image* d
   return measureUneven(before, later, laterSurfaces_, seen, later, mask, difference);
 }
 
-Image Reprojection::motion() const {
-  Image motion(later_.width, later_.height, 4);
-  const glm::dvec2 extent(later_.width, later_.height);
-  for (int y = 0; y < later_.height; ++y)
-    for (int x = 0; x < later_.width; ++x) {
-      const std::optional<glm::dvec3> place = placeOf(x, y);
-      if (!place) continue;
-      const glm::dvec2 moved = (glm::dvec2(x + 0.5, y + 0.5) - earlierCamera_.project(*place)) / extent;
-      motion.at(x, y)[0] = static_cast<float>(moved.x);
-      motion.at(x, y)[1] = static_cast<float>(moved.y);
-    }
-  return motion;
-}
-
-std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Render& render, Image* difference) {
+std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Render& render,
+                                       Image* difference) {
   std::optional<Reprojection> reprojection;
   if (last_) {
     reprojection.emplace(*last_, capture);

@@ -3,14 +3,13 @@
 
 #include <array>
 #include <functional>
-#include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
 #include "metrics/masked_image.h"
 #include "metrics/spots.h"
 #include "metrics/surface.h"
-#include "reference/camera.h"
+#include "reference/camera_motion.h"
 
 namespace pellucid::harness {
 
@@ -36,32 +35,30 @@ Flicker compareShifted(const Image& still, const Image& moved, const Mask& mask,
 // likewise.
 Flicker compareTurned(const Image& still, const Image& turned, const Surfaces& surfaces, const Mask& mask);
 
-// Two frames of a path, each by a camera of its own: the pixels of the later frame in the earlier one. Both captures
-// outlive it.
+// Two frames of a path, each by a camera of its own: the pixels of the later frame in the earlier one. Both
+// captures outlive it.
 class Reprojection {
 public:
   // Throws InputError for an oblique or singular projection.
   Reprojection(const Capture& earlier, const Capture& later);
 
-  // RGBA of which RG is Capture::motion of the later capture, where bodies stand still in the world; 0 where nothing is
-  // seen.
-  Image motion() const;
+  // Capture::motion of the later capture, where bodies stand still in the world.
+  Image motion() const { return motion_.image(); }
 
-  // d is the difference between the later frame's image and the earlier image at the same place of the surface, read
-  // between pixels, less its mean over the 5x5 pixels around it, since diffused light changes evenly. Left out are
-  // places that the earlier frame does not show, and pixels whose surroundings of 5x5 pixels, or of 2x2 in the earlier
-  // frame, are not wholly of one surface. Statistics are over the later frame. `difference`: gets d, 0 where it is left
-  // out. Throws InputError when an image has not its capture's size with three channels.
+  // d is the difference between the later frame's image and the earlier image at the same place of the
+  // surface, read between pixels, less its mean over the 5x5 pixels around it, since diffused light changes
+  // evenly. Left out are places that the earlier frame does not show, and pixels whose surroundings of 5x5
+  // pixels, or of 2x2 in the earlier frame, are not wholly of one surface. Statistics are over the later
+  // frame. `difference`: gets d, 0 where it is left out. Throws InputError when an image has not its
+  // capture's size with three channels.
   Flicker compare(const Image& earlier, const Image& later, Image* difference = nullptr) const;
 
 private:
-  std::optional<glm::dvec3> placeOf(int x, int y) const;
   std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const;
 
   const Capture &earlier_, &later_;
   Surfaces earlierSurfaces_, laterSurfaces_;
-  reference::Camera earlierCamera_, laterCamera_;
-  glm::dmat4 earlierFromLater_;
+  reference::CameraMotion motion_;
 };
 
 // The frames of a path in their order, each beside the frame before.
@@ -69,10 +66,11 @@ class PathFlicker {
 public:
   using Render = std::function<std::vector<Image>(const Capture&)>;
 
-  // Gives the capture its motion, renders its images, and compares each with the image of the frame before. `switches`: a
-  // light goes on or off before this frame. Empty for the first frame and where lights switch. `difference`: gets the
-  // first image's, as Reprojection::compare() gives it.
-  std::vector<Flicker> next(Capture capture, bool switches, const Render& render, Image* difference = nullptr);
+  // Gives the capture its motion, renders its images, and compares each with the image of the frame before.
+  // `switches`: a light goes on or off before this frame. Empty for the first frame and where lights switch.
+  // `difference`: gets the first image's, as Reprojection::compare() gives it.
+  std::vector<Flicker> next(Capture capture, bool switches, const Render& render,
+                            Image* difference = nullptr);
   const std::vector<Image>& images() const { return images_; }  // of the last frame
 
 private:
@@ -83,7 +81,8 @@ private:
 // The flicker of a path: the mean of its steps' RMSE, and the largest of each other statistic.
 Flicker flickerOf(const std::vector<Flicker>& steps);
 
-// Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each frame's.
+// Spots of two frames of turned lights (metrics/spots.h). `stillInput`, `turnedInput`: what explains each
+// frame's.
 struct SpotFlicker {
   std::size_t still = 0, turned = 0;  // that the frame has
   std::size_t appear = 0,

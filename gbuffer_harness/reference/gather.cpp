@@ -327,7 +327,9 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
     side -= surface.ray * (glm::dot(normal, side) / std::min(glm::dot(normal, surface.ray), -0.1));
     return mm_ * glm::length(side);
   };
-  reach = std::max(reach, 2 * std::max(pixelAlong({1, 0}), pixelAlong({0, 1})));
+  const double side = std::max(pixelAlong({1, 0}), pixelAlong({0, 1}));
+  const double known = std::min(reach / side, 1.0);  // less than a pixel's side is not seen
+  reach = std::max(reach, 2 * side);
   const auto stepsAlong = [&](glm::dvec2 step) {
     return std::max(2.0, std::floor(reach / pixelAlong(step) + 0.5));
   };
@@ -355,7 +357,7 @@ double Gather::meanCurvature(const Surface& surface, double reach) const {
   const double area = glm::dot(normal, glm::cross(a.apart, b.apart));
   if (!(std::abs(area) > 0.1 * glm::length(a.apart) * glm::length(b.apart))) return 0;
   const double trace = glm::dot(normal, glm::cross(a.turn, b.apart) + glm::cross(a.apart, b.turn));
-  return a.weight * b.weight * 0.5 * trace / area;
+  return known * a.weight * b.weight * 0.5 * trace / area;
 }
 
 double Gather::thickness(const Surface& surface) const {
@@ -393,9 +395,11 @@ double Gather::thickness(const Surface& surface) const {
     if (glm::length(n) > 0) outward = glm::normalize(glm::dot(n, surface.ray) < 0 ? -n : n);
   }
   const double opposite = 0.5 - 0.5 * glm::dot(surface.normal, outward);
-  return 0.5 * chord * mm_ *
-         (std::abs(glm::dot(surface.ray, surface.normal)) + std::abs(glm::dot(surface.ray, outward))) /
-         std::max(opposite, 0.01);
+  // Pixels do not tell steeper faces, as of limbs of one pixel.
+  const auto cosine = [&](const glm::dvec3& normal) {
+    return std::max(std::abs(glm::dot(surface.ray, normal)), kLeastCosine);
+  };
+  return 0.5 * chord * mm_ * (cosine(surface.normal) + cosine(outward)) / std::max(opposite, 0.01);
 }
 
 BodyFactors Gather::bodyAt(const Surface& surface, std::size_t material) const {

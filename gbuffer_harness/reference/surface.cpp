@@ -177,13 +177,14 @@ glm::dvec3 SurfaceReader::flatStep(int x, int y, const glm::dvec3& position, con
   return camera_.position(center + 0.5 * step, depth) - camera_.position(center - 0.5 * step, depth);
 }
 
-// Displacement along the surface per pixel step, from whichever neighbor of the same material is
-// nearer in depth: the other one may lie across an edge. Where a pixel of something else lies between, as of dithered hair, the
-// next pixel stands for the neighbor, half as far off in depth. That of a facing surface when none can be used.
+// Displacement along the surface per pixel step, from the neighbors of the same material to both sides. The
+// nearer one counts more, as the other may lie across an edge. Where a pixel of something else lies between,
+// as of dithered hair, the next pixel stands for the neighbor, half as far off in depth. That of a facing
+// surface when none can be used.
 glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
                                      const glm::dvec3& position) const {
-  glm::dvec3 best = flatStep(x, y, position, {stepX, stepY});
-  double least = INFINITY;
+  glm::dvec3 sum(0);
+  double total = 0;
   for (const int sign : {1, -1}) {
     const auto planarAt = [&](int away) -> std::optional<double> {
       const int nx = x + away * sign * stepX, ny = y + away * sign * stepY;
@@ -196,14 +197,13 @@ glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int 
     if (!there)
       if (const std::optional<double> next = planarAt(2)) there = 0.5 * (own + *next);
     if (!there) continue;
-    const double difference = std::abs(*there - own);
     const int nx = x + sign * stepX, ny = y + sign * stepY;
-    if (difference < least) {
-      least = difference;
-      best = double(sign) * (camera_.position({nx + 0.5, ny + 0.5}, *there) - position);
-    }
+    const glm::dvec3 step = double(sign) * (camera_.position({nx + 0.5, ny + 0.5}, *there) - position);
+    const double weight = 1 / std::pow(glm::dot(step, step), 2);
+    sum += weight * step;
+    total += weight;
   }
-  return best;
+  return total > 0 ? sum / total : flatStep(x, y, position, {stepX, stepY});
 }
 
 std::optional<glm::dvec3> SurfaceReader::normalFromDepth(const DepthImage& depth, int x, int y,
@@ -239,12 +239,14 @@ double SurfaceReader::chordBeside(const Surface& s) const {
 
 SurfaceReader::HiddenFace SurfaceReader::hiddenFace(const Surface& s) const {
   const glm::dvec3 front = facet(s);
-  if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) return {s.position - *s.chord * front, -front, *s.chord, 1};
+  if (capture_.backDepth.encoding == PELLUCID_DEPTH_THICKNESS)
+    return {s.position - *s.chord * front, -front, *s.chord, 1};
   const std::optional<glm::dvec3> towardsEye = backFacet(s);
   const glm::dvec3 back = towardsEye ? -*towardsEye : -front;
   const double cosine = std::abs(glm::dot(front, s.ray)), other = std::abs(glm::dot(back, s.ray));
   const double seen = std::min(3 * std::min(cosine, other), 1.0);
-  return {s.position + *s.chord * s.ray, back, 0.5 * chordBeside(s) * (cosine + other), seen * (0.5 - 0.5 * glm::dot(front, back))};
+  return {s.position + *s.chord * s.ray, back, 0.5 * chordBeside(s) * (cosine + other),
+          seen * (0.5 - 0.5 * glm::dot(front, back))};
 }
 
 SurfaceReader::Footprint SurfaceReader::footprint(int x, int y, const Surface& s) const {

@@ -74,7 +74,7 @@ InputImages::InputImages(Device& device, const Capture& capture, const ReplaySet
   images_.albedo = uploaded(device, capture.albedo, VK_FORMAT_R32G32B32A32_SFLOAT);
   images_.material = uploadedMaterial(device, capture, settings);
   if (settings.reuse == PELLUCID_REUSE_ACCUMULATE)
-    images_.motion = uploaded(device, capture.motion.empty() ? Image(capture.width, capture.height, 4) : capture.motion,
+    images_.motion = uploaded(device, capture.motion.empty() ? Image(capture.width, capture.height, 2) : capture.motion,
                               VK_FORMAT_R32G32B32A32_SFLOAT);
   const bool array = hasLayers(capture.lights);
   for (const ShadowImageSource& source : shadowImages(capture.lights).images)

@@ -316,40 +316,53 @@ void FrameRun::uploadOutput(const Image& content) const { images_->uploadOutput(
 
 void FrameRun::restoreIrradiance(const Capture& capture) const { images_->restoreIrradiance(capture); }
 
-Image ReplaySequence::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                          const ReplaySettings& settings) {
-  auto run = std::make_unique<FrameRun>(device_, contexts_.of(capture), capture, materials, settings, last_.get());
-  device_.run([&](VkCommandBuffer commandBuffer) { run->record(commandBuffer); });
-  last_ = std::move(run);
-  return last_->output();
+namespace {
+
+// With the factor of the light that the capture needs, if the user leaves the choice.
+ReplaySettings chosen(const ReplaySettings& given, const Capture& capture) {
+  ReplaySettings settings = given;
+  if (given.preExposure == 0) settings.preExposure = preExposureFor(capture);
+  return settings;
+}
+
+// `given`: the user's settings.
+ReplayResult recorded(Device& device, const FrameRun& run, const ReplaySettings& given,
+                      const std::function<void(const FrameRun&)>& look) {
+  ReplayResult result;
+  result.plan = run.plan();
+  result.preExposure = run.frame().preExposure;
+  device.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
+  result.output = run.output();
+  const bool holdsLight =
+      given.debugView == PELLUCID_DEBUG_NONE || given.debugView == PELLUCID_DEBUG_IRRADIANCE;
+  if (given.preExposure == 0 && holdsLight) scaleColors(result.output, 1 / result.preExposure);
+  result.statistics = run.statistics();
+  if (look) look(run);
+  return result;
+}
+
+}  // namespace
+
+ReplayResult ReplaySequence::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                                 const ReplaySettings& settings,
+                                 const std::function<void(const FrameRun&)>& look) {
+  if (last_ && (last_->frame().imageExtent[0] != static_cast<uint32_t>(capture.width) ||
+                last_->frame().imageExtent[1] != static_cast<uint32_t>(capture.height)))
+    cut();
+  last_ = std::make_unique<FrameRun>(device_, contexts_.of(capture), capture, materials,
+                                     chosen(settings, capture), last_.get());
+  return recorded(device_, *last_, settings, look);
 }
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                           const ReplaySettings& given, uint32_t timedFrames,
+                           const ReplaySettings& settings, uint32_t timedFrames,
                            const std::function<void(const FrameRun&)>& look) {
-  ReplaySettings settings = given;
-  const bool choose = given.preExposure == 0;
-  if (choose) settings.preExposure = preExposureFor(capture);
-  const FrameRun run(device_, contextFor(capture), capture, materials, settings);
+  const FrameRun run(device_, contextFor(capture), capture, materials, chosen(settings, capture));
+  if (timedFrames == 0) return recorded(device_, run, settings, look);
   ReplayResult result;
-  result.plan = run.plan();
-  result.preExposure = settings.preExposure;
-  const auto recordFirst = [&] {
-    device_.run([&](VkCommandBuffer commandBuffer) { run.record(commandBuffer); });
-    result.output = run.output();
-    const bool holdsLight =
-        settings.debugView == PELLUCID_DEBUG_NONE || settings.debugView == PELLUCID_DEBUG_IRRADIANCE;
-    if (choose && holdsLight) scaleColors(result.output, 1 / settings.preExposure);
-    result.statistics = run.statistics();
-    if (look) look(run);
-  };
-  if (timedFrames == 0) {
-    recordFirst();
-    return result;
-  }
   {
     const ProgressLine progress("rendering a first frame, in which the driver may compile shaders, too");
-    recordFirst();
+    result = recorded(device_, run, settings, look);
   }
 
   const uint32_t count = result.plan.dispatchCount;

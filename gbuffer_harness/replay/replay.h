@@ -21,8 +21,8 @@ namespace pellucid::harness {
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
-// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of desc.options.uses
-// when the context is made, as engines have it.
+// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of
+// desc.options.uses when the context is made, as engines have it.
 enum class Compile { WhenPlanned, AtCreation };
 
 // A module context on a device.
@@ -146,14 +146,16 @@ struct ReplayResult {
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 
-// Frames of one size, each of which goes on with the history of the one before, as settings.reuse says.
+// Frames in their order, each of which goes on with the history of the one before, as settings.reuse says.
 class ReplaySequence {
 public:
   explicit ReplaySequence(Device& device) : device_(device), contexts_(device) {}
 
-  // As FrameRun::output.
-  Image run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-            const ReplaySettings& settings);
+  // As Replayer::run(), without times. After a frame of another size the history begins anew.
+  ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
+                   const ReplaySettings& settings, const std::function<void(const FrameRun&)>& look = {});
+  // The next frame begins anew, as after a cut.
+  void cut() { last_.reset(); }
 
 private:
   Device& device_;

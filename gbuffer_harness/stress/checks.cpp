@@ -320,7 +320,7 @@ std::optional<Worst> history(Subject& s) {
   second.settings.translucency.gatherSamples = kDefaultGatherSamples;
   second.settings.translucency.gatherSpacing = s.frame.settings.translucency.gatherSpacing;
   Image& motion = second.capture.motion;
-  motion = Image(width, height, 4);
+  motion = Image(width, height, 2);
   const double speed = random.chance(0.3) ? 0 : random.magnitude(1e-3, 0.5);
   for (float& v : motion.data) v = random.chance(0.02) ? badFloat(random) : static_cast<float>(random.real(-speed, speed));
   // Parts lose their material, and others have it for the first time.

@@ -41,11 +41,11 @@ public:
   ModelSource(Device& device, Model model, const ModelCamera& camera, const RasterOptions& raster)
       : model_(std::move(model)), raster_(raster), rasterizer_(device, model_) {
     const Bounds bounds = boundsOf(model_);
-    center_ = bounds.center;
+    start_.center = bounds.center;
     radius_ = bounds.radius;
     start_.width = raster.width;
     start_.height = raster.height;
-    start_.camera = {camera, center_};
+    start_.camera = {camera, start_.center};
     start_.lights = viewLights(model_.lights);
     start_.materials = model_.materials;
   }
@@ -98,12 +98,12 @@ public:
   SceneSource(const SceneParameters& parameters, const std::vector<MaterialSource>& materials)
       : parameters_(parameters), scene_(sceneModel(parameters)) {
     scene_.materials = materials;
-    center_ = fromGlm(scene_.center);
+    start_.center = fromGlm(scene_.center);
     radius_ = scene_.radius;
     if (scene_.endless) fixedCamera_ = "this scene has no end, so its camera stays where it is";
     if (scene_.paint) fixedLights_ = "this scene has a painted irradiance, and no lights";
     ViewCamera& camera = start_.camera;
-    camera.pivot = center_;
+    camera.pivot = start_.center;
     camera.lens.name = parameters.name;
     camera.lens.viewFromWorld = scene_.camera.viewFromWorld;
     camera.lens.orthographic = scene_.camera.orthographic;
@@ -152,7 +152,7 @@ public:
     start_.materials = capture_.materials;
     for (const Light& light : capture_.lights) maps_.push_back(light.shadowMaps);
     findCenter();
-    start_.camera.pivot = center_;
+    start_.camera.pivot = start_.center;
     fixedCamera_ = "a capture is seen by its own camera";
     fixedLights_ =
         "the irradiance is the capture's: lights change what comes through, and stay where their shadow maps "
@@ -183,7 +183,7 @@ private:
       high = glm::max(high, p);
     });
     if (!(low.x <= high.x)) return;
-    center_ = fromGlm(0.5 * (low + high));
+    start_.center = fromGlm(0.5 * (low + high));
     radius_ = std::max(0.5 * glm::length(high - low), 1e-9);
   }
 

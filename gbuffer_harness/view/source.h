@@ -33,9 +33,11 @@ public:
   // True where the scene's colors are those of its materials, which have to be drawn anew with them.
   virtual bool drawsMaterials() const { return false; }
 
-  const ViewState& start() const { return start_; }  // as it is opened: size, camera, lights, materials
-  const Vector3& center() const { return center_; }  // world; what lights are dragged round
-  double radius() const { return radius_; }          // scene units, > 0
+  const ViewState& start() const {
+    return start_;
+  }  // as it is opened: size, camera, center, lights, materials
+  const Vector3& center() const { return start_.center; }  // what lights are dragged round, too
+  double radius() const { return radius_; }                // scene units, > 0
 
   // Empty where camera and size, or the lights' part of the irradiance, can change; else a sentence that says
   // why not.
@@ -44,7 +46,6 @@ public:
 
 protected:
   ViewState start_;
-  Vector3 center_ = {0, 0, 0};
   double radius_ = 1;
   std::string fixedCamera_, fixedLights_;
 };

@@ -14,6 +14,10 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown) {
   if (shown != Shown::Debug) settings.debugView = PELLUCID_DEBUG_NONE;
   if (shown == Shown::Debug && settings.debugView == PELLUCID_DEBUG_NONE)
     settings.debugView = PELLUCID_DEBUG_THICKNESS;
+  // As an engine passes the place of the body. Kept light stays with the screen.
+  if (settings.anchor[3] == 0 && settings.reuse == PELLUCID_REUSE_NONE)
+    settings.anchor = {static_cast<float>(state.center[0]), static_cast<float>(state.center[1]),
+                       static_cast<float>(state.center[2]), 1};
   settings.aliasOutput = false;  // before and after are looked at together
   return settings;
 }

@@ -45,6 +45,7 @@ constexpr int kSmallestWindow = 64;
 struct ViewState {
   int width = 512, height = 512;  // pixels of the picture, 1..kLargestSide
   ViewCamera camera;
+  Vector3 center = {0, 0, 0};  // of the bodies, world, with which noise stays as the camera moves
   std::vector<ViewLight> lights;
   std::vector<MaterialSource> materials;
   ReplaySettings settings;

@@ -209,7 +209,7 @@ constexpr Pass kEntryPointsPass{
     .reads = shadowImages(PELLUCID_ENTRY_IMAGE_COUNT) |
              bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
                       PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_MATERIAL,
-                      PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_BLOCKS),
+                      PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
@@ -219,7 +219,7 @@ void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel)).push(1, entriesOf(group));
+  step.lights(group).push(1, entriesOf(group));
   if (p.facts.stages.lists)
     step.groups(group.entryGroups).list(PELLUCID_LIST_ENTRIES);
   else

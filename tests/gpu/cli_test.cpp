@@ -1,6 +1,10 @@
 // The command as a person runs it: exit codes, sentences, files.
 #include "cli_fixture.h"
 
+#include "capture/exr.h"
+#include "capture/read.h"
+#include "metrics/flicker.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,7 +44,8 @@ TEST_F(Cli, Statistics) {
   int blocks = 0, most = 0;
   const std::size_t line = outcome.text.find("blocks with material");
   ASSERT_NE(line, std::string::npos) << outcome.text;
-  ASSERT_EQ(std::sscanf(&outcome.text[line], "blocks with material %d %d", &blocks, &most), 2) << outcome.text;
+  ASSERT_EQ(std::sscanf(&outcome.text[line], "blocks with material %d %d", &blocks, &most), 2)
+      << outcome.text;
   EXPECT_EQ(blocks, 1);
   EXPECT_EQ(most, 9);
   EXPECT_TRUE(fs::exists(path("out.png")));
@@ -125,6 +130,34 @@ TEST_F(Cli, TurntableAndSequence) {
   EXPECT_TRUE(fs::exists(path("out.2.png")));
 }
 
+// Frames with history follow each other; a killed sequence goes on as if it had not been, and a gap is a cut.
+TEST_F(Cli, SequenceWithHistory) {
+  const std::string in = path("in.#.exr"), set = " --set reuse=accumulate -o ", out = path("out.#.exr");
+  expect(0, "capture --procedural ear --size 32x32 --shadow-size 32 --turntable 90 --frames 1-4 -o " + in);
+  const Capture first = readCapture(path("in.1.exr")), second = readCapture(path("in.2.exr"));
+  const Image expected = Reprojection(first, second).motion();
+  ASSERT_EQ(second.motion.data.size(), expected.data.size());
+  double most = 0;
+  for (std::size_t i = 0; i < expected.data.size(); ++i) {
+    ASSERT_NEAR(second.motion.data[i], expected.data[i], 1e-6) << i;
+    most = std::max(most, std::abs(double(expected.data[i])));
+  }
+  EXPECT_GT(most, 0.01);
+
+  expect(0, "replay " + in + set + out, "4 written");
+  expect(0, "replay " + path("in.1.exr") + " --repeat 0" + set + path("alone.1.exr"));
+  expect(0, "replay " + path("in.2.exr") + " --repeat 0" + set + path("alone.2.exr"));
+  EXPECT_EQ(readExrImage(path("out.1.exr")).data, readExrImage(path("alone.1.exr")).data);
+  EXPECT_NE(readExrImage(path("out.2.exr")).data, readExrImage(path("alone.2.exr")).data);
+  fs::rename(path("out.4.exr"), path("fourth.exr"));
+  expect(0, "replay " + in + set + out, "1 written, 3 finished before");
+  EXPECT_EQ(bytes("out.4.exr"), bytes("fourth.exr"));
+  fs::remove(path("out.4.exr"));
+  expect(0, "replay " + in + " --frames 2,4" + set + out, "1 written, 1 finished before");
+  expect(0, "replay " + path("in.4.exr") + " --repeat 0" + set + path("alone.4.exr"));
+  EXPECT_EQ(readExrImage(path("out.4.exr")).data, readExrImage(path("alone.4.exr")).data);
+}
+
 TEST_F(Cli, SequenceUsage) {
   expect(2, "replay in.####.exr", "a sequence: -o with #### is required");
   expect(3, "replay in.####.exr -o o.####.exr", "in.####.exr: no file has such a name");
@@ -169,7 +202,8 @@ TEST_F(Cli, GuardedStressNamesTheExtensionThatADeviceLacks) {
   EXPECT_NE(outcome.text.find("VK_EXT_external_memory_host is missing"), std::string::npos) << outcome.text;
 }
 
-// A frame that found a fault, which is mended: without the fine filter a pixel at an edge counted less than 0.
+// A frame that found a fault, which is mended: without the fine filter a pixel at an edge counted less than
+// 0.
 TEST_F(Cli, StressFrameThatFoundAFaultHolds) {
   expect(0, "stress --seed 303 --first 26 --frames 1 --pixels 12000000 --only more-irradiance",
          "seed 303, frames 26 to 26, ");

@@ -53,6 +53,7 @@ inline Capture sampleCapture() {
   capture.backDepth = {screen(1, 0.125f), PELLUCID_DEPTH_DEVICE};
   capture.irradiance = screen(3, 0.1f);
   capture.hiddenIrradiance = screen(3, 0.2f);
+  capture.motion = screen(2, -0.4f);
   capture.albedo = screen(3, 0.3f);
   capture.truth = Truth{screen(3, 0.9f), screen(3, 0.01f), 1u << 20, 7, "0123456789abcdef"};
   for (int i = 0; i < kSampleWidth * kSampleHeight; ++i)

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <tuple>
 
-#include "capture/read.h"
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
+#include "capture/read.h"
 #include "capture/write.h"
 #include "common/error.h"
 #include "unit/capture_samples.h"
@@ -35,7 +35,8 @@ TEST(CaptureRoundTrip, IsBitExactWithFloat) {
   EXPECT_TRUE(read.environment);
   expectSame(read.frontDepth, written.frontDepth);
   expectSame(read.backDepth, written.backDepth);
-  for (const auto image : {&Capture::irradiance, &Capture::hiddenIrradiance, &Capture::albedo})
+  for (const auto image :
+       {&Capture::irradiance, &Capture::hiddenIrradiance, &Capture::motion, &Capture::albedo})
     EXPECT_TRUE(sameBits(read.*image, written.*image));
   EXPECT_TRUE(sameBits(read.truth->image, written.truth->image));
   EXPECT_TRUE(sameBits(read.truth->standardError, written.truth->standardError));
@@ -82,13 +83,14 @@ TEST(CaptureRoundTrip, MinimalCaptureHasNoOptionalParts) {
   const TemporaryDirectory directory;
   Capture written = sampleCapture();
   written.backDepth = {};
-  written.hiddenIrradiance = written.albedo = {};
+  written.hiddenIrradiance = written.motion = written.albedo = {};
   written.truth.reset();
   written.lights.clear();
   writeCapture(written, directory / "c.exr");
   const Capture read = readCapture(directory / "c.exr");
   EXPECT_TRUE(read.backDepth.image.empty());
   EXPECT_TRUE(read.hiddenIrradiance.empty());
+  EXPECT_TRUE(read.motion.empty());
   EXPECT_TRUE(read.albedo.empty());
   EXPECT_FALSE(read.truth.has_value());
   EXPECT_TRUE(read.lights.empty());
@@ -335,7 +337,8 @@ TEST_F(Manifests, NegativeViewZIsRefusedOrScaled) {
   }
 }
 
-// A thickness map of 0..1 has its range as the scale. Depths of fronts are none, and neither are those of shadow maps.
+// A thickness map of 0..1 has its range as the scale. Depths of fronts are none, and neither are those of
+// shadow maps.
 TEST_F(Manifests, ThicknessesStandForBackDepths) {
   manifest["buffers"]["backDepth"] = {{"constant", {0.25}}, {"encoding", "thickness"}, {"scale", 20}};
   const Capture capture = read();
@@ -355,7 +358,8 @@ TEST_F(Manifests, ThicknessesStandForBackDepths) {
   }
 }
 
-// Ray tracers store how far along its ray a pixel's surface lies: of a plane that faces the camera, more to the side.
+// Ray tracers store how far along its ray a pixel's surface lies: of a plane that faces the camera, more to
+// the side.
 TEST_F(Manifests, DistancesAlongRaysBecomeViewZ) {
   manifest["buffers"]["frontDepth"] = {{"constant", {9.0}}, {"encoding", "distance"}};
   const Capture capture = read();
@@ -403,6 +407,24 @@ TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
   manifest["buffers"]["irradiance"]["includesAlbedo"] = true;
   manifest["buffers"].erase("albedo");
   expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
+}
+
+// Engines store motion in pixels, in parts of the image or of clip space, upwards or downwards.
+TEST_F(Manifests, MotionIsInPartsOfTheImage) {
+  EXPECT_TRUE(read().motion.empty());
+  json& motion = manifest["buffers"]["motion"];
+  motion = {{"file", "g.exr"}, {"channels", {"E.R", "E.G"}}, {"motionScale", {0.5, -0.25}}};
+  const Capture capture = read();
+  ASSERT_EQ(capture.motion.channels, 2);
+  for (std::size_t i = 0; i < capture.motion.pixels(); ++i) {
+    ASSERT_EQ(capture.motion.data[2 * i], 0.5f * capture.irradiance.data[3 * i]);
+    ASSERT_EQ(capture.motion.data[2 * i + 1], -0.25f * capture.irradiance.data[3 * i + 1]);
+  }
+  motion["motionScale"] = {0.5};
+  expectNames(refusalOf([&] { read(); }), {"buffers.motion.motionScale", "2"});
+  motion.erase("motionScale");
+  motion["scale"] = 2;
+  expectNames(refusalOf([&] { read(); }), {"buffers.motion.scale"});
 }
 
 TEST_F(Manifests, FilesAreRelativeToTheManifest) {

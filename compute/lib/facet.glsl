@@ -1,0 +1,34 @@
+// The facet of a pixel: what the depths around it say of its surface.
+//
+// A shader declares before it includes this file FrameConstants frame (a name, as a copy would take registers), and the functions
+//   float distanceOf(ivec2 pixel, uint material, bool back); // as translucency/transmission.glsl says
+//   ivec2 inLattice(ivec2 pixel); // where frame.camera counts from
+// and requires GL_EXT_control_flow_attributes.
+#ifndef PELLUCID_FACET_GLSL
+#define PELLUCID_FACET_GLSL
+
+#include "lib/surface.glsl"
+
+// The i-th of the four pixels beside a pixel: right, left, below, above.
+ivec2 pixelBeside(ivec2 pixel, int i) {
+  int side = 1 - 2 * (i & 1);
+  return pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
+}
+
+// Unit normal of the front or back depths, towards the eye; 0: not known. `own`: the pixel's planar distance, above 0.
+vec3 facetAt(ivec2 pixel, uint material, float own, bool back) {
+  vec4 beside;
+  // Loads at once, whose latencies overlap.
+  [[unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
+  if (!all(greaterThan(beside, vec4(0.0)))) {
+    // Single pixels of hair lie between pixels of the surface.
+    [[dont_unroll]] for (int i = 0; i < 4; ++i) {
+      if (beside[i] > 0.0) continue;
+      float beyond = distanceOf(pixelBeside(pixelBeside(pixel, i), i), material, back);
+      if (beyond > 0.0) beside[i] = mix(own, beyond, 0.5);
+    }
+  }
+  return normalOfDepths(frame.camera, inLattice(pixel), own, beside);
+}
+
+#endif
