@@ -267,4 +267,12 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   }
 }
 
+// Alpha is the engine's. Where the output holds floats, no pixel of a plane rounds it to a half.
+TEST_F(GpuTest, DiffusionKeepsTheBitsOfAlphaInFloats) {
+  Capture c = flatCapture(64, 64);
+  c.irradiance = Image(64, 64, 4, 0.1f);
+  const Image out = replay(c, skin(), inFloats(PELLUCID_FEATURE_DIFFUSION));
+  for (std::size_t i = 3; i < out.data.size(); i += 4) ASSERT_EQ(out.data[i], 0.1f) << i / 4;
+}
+
 }  // namespace

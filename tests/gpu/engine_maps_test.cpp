@@ -1,5 +1,6 @@
 // Shadow maps as engines draw them, against plain maps of the same scene: depth bias, front faces culled, few
 // bits, tiles of an atlas, layers of an array, cascades. And exactly, on planes.
+// No other test finds a bias or an offset of the rasterizer that is taken back in part, or rows of a neighboring tile in a slope.
 #include <algorithm>
 #include <cmath>
 
@@ -213,11 +214,16 @@ protected:
     return m;
   }
   static double unit() { return GetParam() == PELLUCID_DEPTH_DEVICE ? 0.01 : 1; }  // of a mm, stored
-  static Image through(const ShadowMap& m) {
+  // `around`: maps of lights that are off.
+  static Image through(const ShadowMap& m, const std::vector<ShadowMap>& around = {}) {
     Capture c = flatCapture(32, 32);
     for (float& e : c.irradiance.data) e = 0;
-    c.lights = {backLight()};
+    c.lights.assign(1 + around.size(), backLight());
     c.lights[0].shadowMaps = {m};
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      c.lights[1 + i].intensity = 0;
+      c.lights[1 + i].shadowMaps = {around[i]};
+    }
     ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     const Image image = replay(c, testMaterial(), s);
     reference::Settings r;
@@ -248,6 +254,35 @@ TEST_P(LeaningPlane, OffsetsAreTakenBack) {
     biased.offset = {3, 7};
     const Image tile = through(biased);
     EXPECT_TRUE(sameBits(tile, image)) << "what lies around the tile is not read";
+  }
+}
+
+// The map is smaller than the picture, and its border goes on evenly in the next tiles, as no slope would.
+TEST_P(LeaningPlane, SlopesEndAtTheTile) {
+  for (const bool steepAlongY : {false, true}) {
+    const ShadowMap leaning = map(0.01 * unit());
+    ShadowMap alone = leaning;
+    alone.clipFromWorld[0] = alone.clipFromWorld[5] = 0.415;  // pixels at 2.375 mm lie in the last texels
+    alone.depthBiasSlope = kSlope;
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x)
+        *alone.depth.image.at(x, y) = *(steepAlongY ? leaning.depth.image.at(y, x) : leaning.depth.image.at(x, y)) +
+                                      static_cast<float>(kSlope * 0.01 * unit());
+    const Image expected = through(alone);
+    ShadowMap tile = alone;
+    tile.sharedImage = 0;
+    tile.offset = {8, 8};
+    std::vector<ShadowMap> around;
+    for (const int end : {0, 63})
+      for (const bool row : {false, true}) {
+        ShadowMap& next = around.emplace_back(tile);
+        next.depthBiasSlope = 0;
+        next.depth.image = row ? Image(64, 1, 1) : Image(1, 64, 1);
+        for (int i = 0; i < 64; ++i)
+          next.depth.image.data[static_cast<std::size_t>(i)] = *(row ? tile.depth.image.at(i, end) : tile.depth.image.at(end, i));
+        next.offset[row] += end == 0 ? -1 : 64;
+      }
+    EXPECT_TRUE(sameBits(through(tile, around), expected)) << "steep along " << (steepAlongY ? "y" : "x");
   }
 }
 

@@ -1,4 +1,5 @@
 // Noise in motion: cells that follow an anchor, and probes that are averaged over frames.
+// No other test finds noise that stays on the screen, or accumulated frames that all take the same samples.
 #include "gpu_fixture.h"
 
 #include "common/compare.h"
@@ -219,6 +220,36 @@ TEST_F(Motion, BytesOfAFreshHistoryAreNotRead) {
   const Image zeros = lastOf(0);
   for (const float v : zeros.data) ASSERT_TRUE(std::isfinite(v));
   for (const std::uint64_t garbage : {1u, 2u, 3u}) EXPECT_TRUE(sameBits(lastOf(garbage), zeros)) << garbage;
+}
+
+// What faced another way is another surface: the next frame is as if nothing had been there.
+TEST_F(Motion, LightOfASurfaceThatTurnedIsNotKept) {
+  const Capture& c = ball();
+  Capture none = c, turned = c, second = c;
+  std::fill(none.material.begin(), none.material.end(), std::uint8_t{0});
+  second.motion = Image(c.width, c.height, 4, 0.0f);
+  // Ramps about the ball's depths, of 70 degrees and more: .75 mm for each pixel of .25 mm.
+  for (int y = 0; y < c.height; ++y)
+    for (int x = 0; x < c.width; ++x) *turned.frontDepth.image.at(x, y) += 0.75f * (static_cast<float>(x % 8) - 3.5f);
+  ReplaySettings s = accumulated();
+  s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+  const auto after = [&](const Capture& before) {
+    const std::vector materials{skin()};
+    const Context& context = replayer().contextFor(c);
+    const FrameRun first(device(), context, before, materials, s);
+    record(first);
+    return record(FrameRun(device(), context, second, materials, s, &first));
+  };
+  const Image fresh = after(none), kept = after(c), other = after(turned);
+  int changed = 0;
+  // In the middle the ball itself faces the camera.
+  for (int y = 40; y < 56; ++y)
+    for (int x = 40; x < 56; ++x)
+      for (int k = 0; k < 3; ++k) {
+        changed += kept.at(x, y)[k] != fresh.at(x, y)[k];
+        EXPECT_EQ(other.at(x, y)[k], fresh.at(x, y)[k]) << x << ", " << y;
+      }
+  EXPECT_GT(changed, 0) << "nothing is kept of the ball itself";
 }
 
 // Cells of 1.3 mm of skin are too far apart to have patterns of their own in a single frame.

@@ -1,5 +1,6 @@
 // The deferred renderer of gbuffer_harness/sample: what each feature changes, and captures of its frames
 // replayed.
+// No other test finds constants overwritten while their frame is in flight, or a queue that does not wait for the other.
 #include <algorithm>
 #include <numeric>
 

@@ -1,5 +1,6 @@
 // The stress: its frames, each of its checks against a fault that it must find, the files of failures, and a
 // short run.
+// No other test finds a check of the stress that sees no fault any more, or a failure that does not replay.
 #include "stress/stress.h"
 
 #include <gtest/gtest.h>

@@ -184,11 +184,20 @@ class BlenderCapture(unittest.TestCase):
              "add('portal', 'AREA')[0].data.cycles.is_portal = True\n"
              "add('specular')[0].visible_diffuse = False\n"
              "add('negative', energy=-10)\n"
+             "thing, tree, emission = add('zone'); falloff = tree.nodes.new('ShaderNodeLightFalloff')\n"
+             "falloff.inputs['Strength'].default_value, falloff.inputs['Smooth'].default_value = 3, 900\n"
+             "tree.links.new(falloff.outputs['Quadratic'], emission.inputs['Strength'])\n"
              "add('far', 'SUN', 1)[0].data.cycles.cast_shadow = False")
 
     def test_lamps_have_the_light_of_their_nodes(self):
         said = self.capture("nodes", "--shadow-size", "16", setup=self.NODES)
         lights = self.manifest("nodes/capture.json")["lights"]
+        # Cycles multiplies by r^2 / (smooth + r^2).
+        zone = lights.pop(4)
+        half, whole = (r * r / (900 + r * r) for r in (zone["range"] * 32 / 63, zone["range"]))
+        table = zone["distanceTable"]
+        self.assertAlmostEqual(table[32] / table[63], half / whole, places=6)
+        self.assertAlmostEqual(zone["intensity"], 3 * whole, places=5)
         self.assertEqual([round(light["intensity"] / (light.get("range", 1) ** 2), 3) for light in lights], [5, 1, 2, 1, 1])
         self.assertEqual([round(value, 3) for value in lights[1]["color"]], [1, 0.1, 0])
         table = lights[2]["distanceTable"]

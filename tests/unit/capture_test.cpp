@@ -308,6 +308,8 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
   manifest["buffers"]["frontDepth"]["scale"] = 0.01;
   manifest["buffers"]["irradiance"]["scale"] = 4;
   manifest["buffers"]["albedo"] = {{"constant", {0.25, 0.5, 0.125}}, {"scale", 2}};
+  manifest["truth"]["scale"] = 8;
+  manifest["truth"]["standardError"] = {{"constant", {0.25, 0.5, 0.125}}};
   const Capture scaled = read();
   for (std::size_t i = 0; i < plain.irradiance.data.size(); ++i)
     EXPECT_EQ(scaled.irradiance.data[i], 4 * plain.irradiance.data[i]);
@@ -319,6 +321,7 @@ TEST_F(Manifests, StoredValuesMayHaveAScale) {
       EXPECT_EQ(scaled.frontDepth.image.data[i], stored) << "nothing is there";
   }
   EXPECT_EQ(scaled.albedo.data[1], 1);
+  EXPECT_EQ(scaled.truth->standardError.data[1], 4) << "noise has the unit of its truth";
 }
 
 // OpenGL's view z is below 0 before the camera. Read as it is, it would be an empty picture.

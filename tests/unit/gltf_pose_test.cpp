@@ -112,4 +112,20 @@ TEST_F(Gltf, TheOriginIsNearTheCameraThatLooks) {
   EXPECT_NEAR(m.vertices[5].position[0] + m.origin[0], 4e6 + 2, 1e-6);
 }
 
+// A scene may have cameras in several places: the one that is chosen sees its own finely.
+TEST_F(Gltf, TheOriginIsNearTheChosenOfSeveralCameras) {
+  GltfBuilder b = square();
+  b.json["nodes"] = {{{"mesh", 0}},
+                     {{"mesh", 0}, {"translation", {4e6, 0, 0}}},
+                     {{"name", "here"}, {"camera", 0}, {"translation", {0, 0, 5}}},
+                     {{"name", "there"}, {"camera", 0}, {"translation", {4e6, 0, 5}}}};
+  b.json["scenes"][0]["nodes"] = {0, 1, 2, 3};
+  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+  for (const auto& [camera, x] : {std::pair("here", 0.0), std::pair("there", 4e6)}) {
+    GltfOptions options;
+    options.camera = camera;
+    EXPECT_NEAR(loadGltf(write("t.glb", b.glb()), options).model.origin[0], x, 16) << camera;
+  }
+}
+
 }  // namespace
