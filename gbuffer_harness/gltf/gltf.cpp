@@ -389,6 +389,9 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     document_.fail("nodes[" + std::to_string(node) + "]", "a camera is scaled by 0");
   result.viewFromWorld = lookAt(fromGlm(frame.position),
                                 fromGlm(frame.position - glm::normalize(frame.backward)), fromGlm(frame.up));
+  if (glm::determinant(glm::dmat3(world)) < 0)
+    scene_.warnings.push_back("nodes[" + std::to_string(node) +
+                              "]: a negative scale mirrors its camera, whose picture is drawn unmirrored");
   scene_.model.cameras.push_back(result);
 }
 
