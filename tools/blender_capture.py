@@ -348,9 +348,15 @@ class Beside:
         return mix
 
     def diffuse(self):
-        """A shader that reflects all of the diffuse light at the surface."""
-        node = self.new("ShaderNodeBsdfDiffuse")
-        self.feed(self.color(), node.inputs["Color"])
+        """A shader that reflects all of the diffuse light at the surface, by the lobe of the material's own shader."""
+        if self.node.type == "BSDF_PRINCIPLED":  # before 4.0 its roughness makes grazing light 14 % brighter, or 30 % darker
+            node = self.new("ShaderNodeBsdfPrincipled")
+            self.feed(self.color(), node.inputs["Base Color"])
+            self.feed(self.node.inputs["Roughness"], node.inputs["Roughness"])
+            subsurface_weight(node).default_value = first_input(node, "Specular IOR Level", "Specular").default_value = 0
+        else:
+            node = self.new("ShaderNodeBsdfDiffuse")
+            self.feed(self.color(), node.inputs["Color"])
         normal = self.node.inputs.get("Normal")
         if normal and normal.links:
             self.feed(normal, node.inputs["Normal"])

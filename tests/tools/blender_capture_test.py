@@ -249,6 +249,17 @@ class BlenderCapture(unittest.TestCase):
         self.assertEqual(media[0], media[1])
         self.assertAlmostEqual(albedo[1], albedo[0] / 2, delta=1e-3)
 
+    def test_the_irradiance_has_the_lobe_of_principled(self):
+        # At grazing angles Disney's diffuse lobe of roughness 1 is brighter than that of roughness 0.
+        rough = ("bpy.data.materials['wax'].node_tree.nodes['Principled BSDF'].inputs['Roughness'].default_value = %g; "
+                 "bpy.data.objects['Key'].hide_render = bpy.data.objects['Icosphere.001'].hide_render = True; "
+                 "bpy.data.objects['Rim'].rotation_euler = (1.47, 0, 0)")
+        light = []
+        for part in (0, 1):
+            self.capture(f"rough{part}", "--shadow-size", "16", "--samples", "1", setup=rough % part)
+            light.append(self.info(f"rough{part}/capture.json")["buffers"]["irradiance"]["range"][1])
+        self.assertGreater(light[1], 1.02 * light[0])
+
     def test_settings_outside_a_capture_are_named(self):
         setup = ("c = scene.cycles; c.film_exposure = 2; c.sample_clamp_direct = 1; c.filter_width = 4; scene.view_settings.exposure = 1\n"
                  "scene.camera.data.clip_start = 45; scene.background_set = bpy.data.scenes.new('set')\n"
