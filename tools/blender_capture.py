@@ -29,8 +29,17 @@ bl_info = {"name": "Pellucid capture", "author": "Pellucid", "version": (0, 2, 0
 
 VULKAN_FROM_OPENGL = Matrix(((1, 0, 0, 0), (0, -1, 0, 0), (0, 0, 0.5, 0.5), (0, 0, 0, 1)))
 LIGHT_KINDS = {"SUN": "directional", "POINT": "point", "SPOT": "spot", "AREA": "point"}
-# Of a sheet that shines to one side, at equal steps of the angle.
-COSINES = [max(math.cos(math.pi * i / 63), 0.0) for i in range(64)]
+
+
+def sheet_factors(spread):
+    """Light of a sheet that shines to one side, at equal steps of the angle, over that ahead without spread; Cycles' grid of slats."""
+    half = max(spread, math.radians(1)) / 2
+    angles = [min(math.pi * i / 63, math.pi / 2) for i in range(64)]
+    if half > 1.57:
+        return [math.cos(angle) for angle in angles]
+    return [math.cos(angle) * max(1 - math.tan(angle) / math.tan(half), 0) / (1 - half / math.tan(half)) for angle in angles]
+
+
 # A map wider than this has no texels left in its middle: six faces of a cube take its place.
 WIDEST_VIEW = math.radians(150)
 
@@ -286,17 +295,23 @@ class Beside:
             self.feed(number, socket)
         return node.outputs[0]
 
-    def color(self):
-        """Of the diffuse light, on and under the surface; Cycles, svm_node_closure_bsdf."""
+    def own_color(self):
+        """Of the diffuse light, on and under the surface, before the part of it that metal and glass take."""
         if self.node.type != "BSDF_PRINCIPLED":
             return self.node.inputs["Color"]
         color, below = self.node.inputs["Base Color"], first_input(self.node, "Subsurface Color")
         if below:
             weight = subsurface_weight(self.node)
             color = self.sum(self.times(color, self.math("SUBTRACT", 1, weight)), self.times(below, weight))
+        return color
+
+    def color(self):
+        """What diffuse light is reflected; Cycles, svm_node_closure_bsdf."""
+        if self.node.type != "BSDF_PRINCIPLED":
+            return self.own_color()
         diffuse = self.math("MULTIPLY", self.math("SUBTRACT", 1, self.node.inputs["Metallic"]),
                             self.math("SUBTRACT", 1, first_input(self.node, "Transmission Weight", "Transmission")))
-        return self.times(color, diffuse)
+        return self.times(self.own_color(), diffuse)
 
     def share(self):
         """The part of this light that goes under the surface."""
@@ -333,12 +348,25 @@ class Beside:
         return mix
 
     def diffuse(self):
-        """A shader that reflects all of the diffuse light at the surface."""
-        node = self.new("ShaderNodeBsdfDiffuse")
-        self.feed(self.color(), node.inputs["Color"])
+        """A shader that reflects all of the diffuse light at the surface, by the lobe of the material's own shader."""
+        if self.node.type == "BSDF_PRINCIPLED":  # before 4.0 its roughness makes grazing light 14 % brighter, or 30 % darker
+            node = self.new("ShaderNodeBsdfPrincipled")
+            self.feed(self.color(), node.inputs["Base Color"])
+            self.feed(self.node.inputs["Roughness"], node.inputs["Roughness"])
+            subsurface_weight(node).default_value = first_input(node, "Specular IOR Level", "Specular").default_value = 0
+        else:
+            node = self.new("ShaderNodeBsdfDiffuse")
+            self.feed(self.color(), node.inputs["Color"])
         normal = self.node.inputs.get("Normal")
         if normal and normal.links:
             self.feed(normal, node.inputs["Normal"])
+        if may_emit(self.tree, self.node):  # its glow lights others
+            glow, both = self.new("ShaderNodeEmission"), self.new("ShaderNodeAddShader")
+            self.feed(first_input(self.node, "Emission", "Emission Color"), glow.inputs["Color"])
+            self.feed(first_input(self.node, "Emission Strength"), glow.inputs["Strength"])
+            self.tree.links.new(node.outputs[0], both.inputs[0])
+            self.tree.links.new(glow.outputs[0], both.inputs[1])
+            node = both
         return self.with_holes(node)
 
     def times_by_index(self, vector, factors):
@@ -422,7 +450,7 @@ class Measured:
     """What the camera sees of a material's values, over its pixels."""
 
     def __init__(self):
-        self.weight, self.sums, self.low, self.high = 0.0, [0.0] * 11, [math.inf] * 11, [-math.inf] * 11
+        self.weight, self.sums, self.low, self.high = 0.0, [0.0] * 14, [math.inf] * 14, [-math.inf] * 14
 
     def add(self, share, values):
         self.weight += share
@@ -443,8 +471,9 @@ class Measured:
                    for low, high in zip(self.low[first:first + count], self.high[first:first + count]))
 
 
-# Of Measured: color under the surface, color in all, radius, anisotropy, index of refraction.
-UNDER, ALL, RADIUS, ANISOTROPY, IOR = 0, 3, 6, 9, 10
+# Of Measured: color under the surface, color in all, radius, anisotropy, index of refraction, color of the medium. Metal and
+# glass take light before it enters, so that a medium does not darken by them.
+UNDER, ALL, RADIUS, ANISOTROPY, IOR, MEDIUM = 0, 3, 6, 9, 10, 11
 
 
 def measured(materials, folder):
@@ -460,12 +489,12 @@ def measured(materials, folder):
 
     pictures = [picture(value) for value in (
         lambda b: b.times(b.medium(), b.share()), lambda b: b.times(b.color(), b.share()), lambda b: b.color(),
-        lambda b: b.times(b.radius(), b.share()))]
+        lambda b: b.times(b.radius(), b.share()), lambda b: b.times(b.own_color(), b.share()))]
     result = {}
     for pixel in zip(*(channel for channels in pictures for channel in channels[:3]), pictures[0][3]):
-        index, share = round(pixel[12]), pixel[0]
+        index, share = round(pixel[15]), pixel[0]
         if index > 0 and share > 1e-4:
-            result.setdefault(index, Measured()).add(share, pixel[3:12] + pixel[1:3])
+            result.setdefault(index, Measured()).add(share, pixel[3:12] + pixel[1:3] + pixel[12:15])
     return result
 
 
@@ -479,7 +508,7 @@ def medium_of(material, seen, millimeters):
             low, high = min(seen.low[first:first + count]), max(seen.high[first:first + count])
             say(f"material {material.name}: its {what} varies over the picture, from {low:.3g} to {high:.3g}: the medium "
                 "has the mean")
-    return medium(seen.mean(RADIUS, 3), seen.mean(UNDER, 3), min(max(seen.mean(ANISOTROPY), 0.0), 0.9),
+    return medium(seen.mean(RADIUS, 3), seen.mean(MEDIUM, 3), min(max(seen.mean(ANISOTROPY), 0.0), 0.9),
                   min(max(seen.mean(IOR), 1.01), 3.8), sorted(methods)[0], millimeters)
 
 
@@ -537,6 +566,8 @@ def constant(socket):
     if not found:
         return socket.default_value
     node, _ = found
+    if node.type == "BLACKBODY" and not node.mute and socket.type == "RGBA":
+        return blackbody(constant(node.inputs["Temperature"]))
     if node.type not in ("RGB", "VALUE") or node.mute:
         raise Unread(node)
     return node.outputs[0].default_value
@@ -544,6 +575,22 @@ def constant(socket):
 
 class Unread(Exception):
     """A node that a light's numbers cannot hold."""
+
+
+def blackbody(kelvin):
+    """Linear Rec. 709 of luminance 1: Planck's law and the CIE's observer in the lobes of Wyman, Sloan and Shirley (2013). Within
+    2 % of Cycles' fit from 1500 to 12000 K, where that ends."""
+    def lobe(x, height, center, left, right):
+        return height * math.exp(-0.5 * ((x - center) / (left if x < center else right)) ** 2)
+
+    x = y = z = 0.0
+    for nm in range(380, 781, 5):
+        power = nm ** -5.0 / math.expm1(1.4388e7 / (nm * min(max(kelvin, 800.0), 12000.0)))
+        x += power * (lobe(nm, 1.056, 599.8, 37.9, 31.0) + lobe(nm, 0.362, 442.0, 16.0, 26.7) + lobe(nm, -0.065, 501.1, 20.4, 26.2))
+        y += power * (lobe(nm, 0.821, 568.8, 46.9, 40.5) + lobe(nm, 0.286, 530.9, 16.3, 31.1))
+        z += power * (lobe(nm, 1.217, 437.0, 11.8, 36.0) + lobe(nm, 0.681, 459.0, 26.0, 13.8))
+    return [max((r * x + g * y + b * z) / y, 0.0) for r, g, b in (
+        (3.2406, -1.5372, -0.4986), (-0.9689, 1.8758, 0.0415), (0.0557, -0.2040, 1.0570))]
 
 
 # Powers of the distance by which the outputs of Light Falloff exceed 1 / distance^2.
@@ -622,7 +669,8 @@ def light_record(name, data, matrix, corners):
         outer = data.spot_size / 2
         record.update(outerConeAngle=outer, innerConeAngle=outer * (1 - max(data.spot_blend, 1e-3)))
     if data.type == "AREA":
-        record["angleTable"] = COSINES
+        factors = sheet_factors(data.spread)
+        record.update(angleTable=[factor / factors[0] for factor in factors], intensity=record["intensity"] * factors[0])
     if power > 0 or smooth > 0:
         reach = 1.1 * max((corner - matrix.translation).length for corner in corners)
         distances = [reach * i / 63 for i in range(64)]
@@ -643,13 +691,16 @@ def say_what_size_does(name, data, matrix, translucent):
     if data.type == "SUN":
         angle = data.angle
     else:
-        width = max(data.size, data.size_y) if data.type == "AREA" else 2 * data.shadow_soft_size
+        width = 2 * data.shadow_soft_size
+        if data.type == "AREA":
+            other = data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
+            width = max(data.size * matrix.to_scale()[0], other * matrix.to_scale()[1])
         angle = 2 * math.atan2(width / 2, nearest)
     if math.degrees(angle) > 2:
         say(f"light {name} of type {data.type} is {math.degrees(angle):.3g} degrees wide: it is soft where the camera sees "
             "it, and in thin parts that of its center")
-    if data.type == "AREA" and data.spread < math.pi - 0.01:
-        say(f"light {name}: its spread of {math.degrees(data.spread):.3g} degrees is left out in thin parts")
+    if data.type == "AREA" and math.degrees(data.spread) < 35:
+        say(f"light {name}: in thin parts its spread of {math.degrees(data.spread):.3g} degrees is a table of steps of 2.9 degrees")
 
 
 def looking(position, direction):
@@ -715,7 +766,7 @@ def as_data(samples):
                  (scene.render, "use_motion_blur", False), (camera.dof, "use_dof", False),
                  (scene.render, "use_multiview", False), (layer, "samples", 0), (layer, "use", True),
                  *((other, "use", False) for other in scene.view_layers if other != layer),
-                 (scene.cycles, "sample_clamp_direct", 0.0), (scene.cycles, "sample_clamp_indirect", 0.0),
+                 (scene.cycles, "sample_clamp_direct", 0.0),
                  (scene.cycles, "light_sampling_threshold", 0.0),
                  (scene.render, "use_crop_to_border", scene.render.use_border),
                  (scene.render, "use_compositing", False), (scene.render, "use_sequencer", False),
@@ -1051,7 +1102,29 @@ PROPERTIES = {
                      "use_multiview": "stereoscopy is left out: the picture is that of the middle camera",
                      "use_freestyle": "Freestyle's lines are left out"}},
 }
-NESTED = ("cycles", "dof", "stereo", "light_linking")
+# Settings of a scene besides those of its render, which are of the same kind.
+PROPERTIES["cycles"] = {
+    "used": "*_bounces ao_* use_fast_gi fast_gi_method caustics_* blur_glossy volume_* dicing_rate max_subdivisions offscreen_* "
+            "sample_clamp_indirect texture_limit_render use_*_cull *_cull_margin shading_system feature_set direct_light_sampling_type",
+    "without effect": "device samples sample_offset preview_* use_preview_* denois* use_denoising seed use_animated_seed time_limit "
+                      "sampling_pattern scrambling_distance auto_scrambling_distance use_layer_samples light_sampling_threshold "
+                      "adaptive_* use_adaptive_sampling use_light_tree *guiding* film_transparent_* debug_* bake_type motion_blur_position "
+                      "rolling_* texture_limit use_auto_tile tile_size",
+    "left out": {"film_exposure": "the capture holds light before exposure: replay --exposure sets that of a PNG",
+                 "sample_clamp_direct": "its clamp darkens Cycles' picture, and the capture's light is not clamped",
+                 "pixel_filter_type": "the picture's filter is left out: pixels hold what is at their centers",
+                 "filter_width": "the picture's filter is left out: pixels hold what is at their centers"}}
+PROPERTIES["curves"] = {"used": "shape subdivisions", "without effect": "", "left out": {}}
+PROPERTIES["world"] = {"used": "use_nodes color cycles.* cycles_visibility.*", "without effect": "", "left out": {}}
+PROPERTIES["layer"] = {
+    "used": "use_solid use_sky use_ao use_strand use_volumes",
+    "without effect": "samples pass_* use use_pass_* use_freestyle use_motion_blur active_* cycles.*", "left out": {}}
+PROPERTIES["view"] = {
+    "used": "", "without effect": "view_transform look",
+    "left out": {"exposure": "the view's exposure is left out: replay --exposure sets that of a PNG",
+                 "gamma": "the view's gamma is left out: EXR files hold light",
+                 "use_curve_mapping": "the view's curves are left out: EXR files hold light"}}
+NESTED = ("cycles", "dof", "stereo", "light_linking", "cycles_visibility")
 
 
 def is_listed(name, patterns):
@@ -1100,6 +1173,13 @@ def say_what_is_left_out(depsgraph):
         raise Refused(f"view layer {layer.name} has the Material Override {layer.material_override.name}: clear it")
     say_unusual("render", "settings", scene.render)
     say_unusual("camera", scene.camera.name, scene.camera.data)
+    for kind, thing in (("cycles", scene.cycles), ("curves", scene.cycles_curves), ("layer", layer), ("view", scene.view_settings)):
+        say_unusual(kind, "settings", thing)
+    if scene.world:
+        say_unusual("world", scene.world.name, scene.world)
+        say_volume("world", scene.world)
+    if scene.background_set:
+        say(f"scene {scene.background_set.name}, the background set: the irradiance has its lamps, and what comes through lacks them")
     if scene.use_nodes and scene.render.use_compositing:
         say("compositing nodes are left out: composite the replay's picture")
     for instance in rendered_instances(depsgraph):
@@ -1111,6 +1191,39 @@ def say_what_is_left_out(depsgraph):
         for slot in thing.material_slots:
             if slot.material:
                 say_unusual("material", slot.material.name, slot.material)
+                say_volume("material", slot.material)
+                say_light_paths(slot.material)
+
+
+def say_volume(kind, thing):
+    if thing.use_nodes and output_node(thing) and output_node(thing).inputs["Volume"].links:
+        say(f"{kind} {thing.name}: light that comes through passes its volume as if there were none; the irradiance has the volume")
+
+
+def say_light_paths(material):
+    """Shadow maps are pictures of a camera: what a material does for other rays is not in them."""
+    for _, node in nodes_of(material.node_tree if material.use_nodes else None):
+        if node.type == "LIGHT_PATH" and any(output.links for output in node.outputs):
+            say(f"material {material.name}: node {node.name} ({node.bl_label}) is left out of shadow maps, which hold what camera "
+                "rays see; the irradiance has the node")
+
+
+def nodes_of(tree):
+    """(tree, node) of a tree and of its groups."""
+    for node in tree.nodes if tree else ():
+        yield tree, node
+        if node.type == "GROUP":
+            yield from nodes_of(node.node_tree)
+
+
+def say_near_plane(camera, translucent):
+    """Behind a near plane that cuts a body the camera sees its inside. translucent: boxes()."""
+    from_world = rigid_inverse(camera.matrix_world)
+    for box in translucent:
+        distances = [-(from_world @ corner).z for corner in box]
+        if camera.data.type == "PERSP" and min(distances) < camera.data.clip_start < max(distances):
+            say(f"camera {camera.name}: its near plane at {camera.data.clip_start:.3g} cuts a translucent body, whose inside is taken "
+                "for its front: set a smaller Clip Start")
 
 
 def may_emit(tree, node):
@@ -1212,7 +1325,7 @@ def capture(folder, stem, options):
         # Of the light that a material reflects, the part that goes under it.
         parts = {index_of[m.name]: seen[index_of[m.name]].part() for m in materials}
         # The walk's reflectance over the color. All of the reflected light has it in the share that goes under.
-        off = {key: walk_factor(media[material_map[str(key)] - 1], seen[key].mean(UNDER, 3)) for key in parts}
+        off = {key: walk_factor(media[material_map[str(key)] - 1], seen[key].mean(MEDIUM, 3)) for key in parts}
         walked = {key: [part * factor for part, factor in zip(parts[key], off[key])] for key in parts}
         reflected = {key: [more + 1 - part for more, part in zip(walked[key], parts[key])] for key in parts}
         if options.truth:
@@ -1250,6 +1363,7 @@ def capture(folder, stem, options):
         depsgraph = bpy.context.evaluated_depsgraph_get()
         manifest["lights"] = []
         translucent = boxes(depsgraph, {m.name for m in materials})
+        say_near_plane(bpy.context.scene.camera, translucent)
         # All of them first: renders change the depsgraph.
         for i, (name, data, matrix) in enumerate(list(lights(depsgraph))):
             record = light_record(name, data, matrix, corners)

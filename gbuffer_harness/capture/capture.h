@@ -136,6 +136,8 @@ struct Capture {
   std::optional<Harmonics> environment;  // light from all around; irradiance has it on visible faces
   std::vector<MaterialSource> materials;
   std::optional<Truth> truth;
+
+  std::vector<std::string> warnings;  // sentences for a person: what its files say and no capture holds
 };
 
 }  // namespace pellucid::harness

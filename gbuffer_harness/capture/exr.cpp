@@ -8,11 +8,14 @@
 #include <ImfMatrixAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfMultiPartOutputFile.h>
+#include <ImfMultiView.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescriptionAttribute.h>
+#include <ImfVecAttribute.h>
 #include <openexr.h>
 
 #include <algorithm>
@@ -24,6 +27,7 @@
 #include <set>
 #include <utility>
 
+#include "capture/exr_attributes.h"
 #include "common/error.h"
 
 namespace pellucid::harness {
@@ -161,6 +165,9 @@ struct ExrFile::Impl {
     const std::string name = "part " + std::to_string(part);
     if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
       fail(name, "type \"" + header.type() + "\" is not read; only scanline and tiled images are");
+    if (Imf::hasEnvmap(header))
+      fail(name + " envmap",
+           "a panorama, which no camera's matrix is; render a perspective or orthographic picture");
     std::int64_t bytesPerPixel = 0;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
       bytesPerPixel += channel.channel().type == Imf::HALF ? 2 : 4;
@@ -238,6 +245,16 @@ std::string ExrFile::partName(int part) const {
   return header.hasName() ? header.name() : std::string();
 }
 
+std::string ExrFile::viewOf(int part, const std::string& channel) const {
+  const Imf::Header& header = impl_->file->header(part);
+  if (header.hasView()) return header.view();
+  return Imf::hasMultiView(header) ? Imf::viewFromChannelName(channel, Imf::multiView(header)) : "";
+}
+
+std::vector<std::string> ExrFile::unusedAttributes(int part) const {
+  return harness::unusedAttributes(impl_->file->header(part));
+}
+
 std::optional<std::array<double, 16>> ExrFile::findMatrix(const std::string& attribute) const {
   // OpenEXR multiplies row vectors from the left: its rows are the columns.
   const auto columns = [](const auto& matrix) {
@@ -260,6 +277,13 @@ std::optional<double> ExrFile::findNumber(const std::string& attribute) const {
   for (int part = 0; part < partCount(); ++part)
     if (const auto* found = impl_->file->header(part).findTypedAttribute<Imf::FloatAttribute>(attribute))
       return static_cast<double>(found->value());
+  return std::nullopt;
+}
+
+std::optional<std::array<double, 2>> ExrFile::findPair(const std::string& attribute) const {
+  for (int part = 0; part < partCount(); ++part)
+    if (const auto* found = impl_->file->header(part).findTypedAttribute<Imf::V2fAttribute>(attribute))
+      return std::array<double, 2>{double(found->value().x), double(found->value().y)};
   return std::nullopt;
 }
 

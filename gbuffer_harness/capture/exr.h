@@ -42,10 +42,15 @@ public:
   std::vector<std::string> channels(int part) const;                      // in the file's order: by name
   std::string channelFormat(int part, const std::string& channel) const;  // "half", "float", "uint"
   std::string partName(int part) const;                                   // "": it has none
+  // The eye of stereo files that a channel is of; "": of all.
+  std::string viewOf(int part, const std::string& channel) const;
+  // Sentences that name attributes by which a part's colors are others than they are read as.
+  std::vector<std::string> unusedAttributes(int part) const;
   // The attribute of the first part that has it. A matrix is column-major for column vectors.
   std::optional<std::string> findText(const std::string& attribute) const;
   std::optional<std::array<double, 16>> findMatrix(const std::string& attribute) const;
   std::optional<double> findNumber(const std::string& attribute) const;
+  std::optional<std::array<double, 2>> findPair(const std::string& attribute) const;
 
   // The part that has all of `channels`: `part`, or when absent the only one. `field` is named in errors.
   int findPart(const std::vector<std::string>& channels, std::optional<int> part,

@@ -5,6 +5,7 @@
 #include <deque>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 #include <tuple>
 #include <vector>
@@ -50,14 +51,27 @@ public:
     request.beside = &map;
   }
 
-  void load(int& screenWidth, int& screenHeight) {
+  void load(int& screenWidth, int& screenHeight, std::vector<std::string>& warnings) {
     std::map<std::tuple<std::filesystem::path, int, ExrWindow>, std::vector<ExrPlane>> parts;
     const Request* first = nullptr;
+    std::map<std::string, const Request*> views;  // of stereo files
+    std::set<std::string> said;
     for (const Request& request : requests_) {
       const BufferSource& source = *request.source;
       if (source.isConstant()) continue;
       const ExrFile& file = open(source.file, source.field + ".file");
       const int part = file.findPart(source.channels, source.part, source.field);
+      const std::string view = request.screen ? file.viewOf(part, source.channels.front()) : "";
+      if (!view.empty()) views.emplace(view, &request);
+      if (views.size() > 1)
+        throw InputError(source.file.string(), source.field,
+                         "of the view \"" + views.rbegin()->first + "\", but " +
+                             views.begin()->second->source->field + " is of \"" + views.begin()->first +
+                             "\"; a capture has one eye");
+      if (request.image->channels == 3)
+        for (const std::string& sentence : file.unusedAttributes(part))
+          if (said.insert(source.file.string() + sentence).second)
+            warnings.push_back(source.field + ": " + source.file.filename().string() + ", " + sentence);
       // In a file of several parts the display window is the screen's, whatever the shadow map's size.
       const ExrWindow window = request.screen || file.partCount() == 1 ? ExrWindow::Display : ExrWindow::Data;
       const int width = file.width(part, window), height = file.height(part, window);
@@ -268,7 +282,7 @@ Capture readImages(const Manifest& manifest) {
       if (sources.casterMaterial)
         loader.wantBeside(depth, *sources.casterMaterial, casters.emplace_back(), kOutside, false);
     }
-  loader.load(capture.width, capture.height);
+  loader.load(capture.width, capture.height, capture.warnings);
   requirePositive(manifest.frontDepth, capture.frontDepth);
   if (manifest.backDepth) requirePositive(*manifest.backDepth, capture.backDepth);
   for (std::size_t i = 0; i < capture.lights.size(); ++i)

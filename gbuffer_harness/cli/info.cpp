@@ -283,7 +283,7 @@ Json describe(const std::filesystem::path& path) {
   if (capture.environment) json["environment"] = *capture.environment;
   json["materials"] = materialsJson(capture, materials);
   json["missing"] = missingParts(capture, materials);
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = capture.warnings;
   if (manifest.hasNormal)
     warnings.push_back(
         "the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "capture/exr.h"
@@ -160,6 +161,7 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
 void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+  warn(capture.warnings);
   warn(coarseTables(capture));
   warn(thinBodies(capture, materials));
   requireNearestDistance(capture, materials, settings);
@@ -226,6 +228,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;
+  std::set<std::string> warnings;  // frames have most in common
   std::vector<int> missing;
   int skipped = 0;
   // Whether the frame was replayed.
@@ -241,6 +244,10 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     const Capture capture = readCapture(input(frame));
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     requireNearestDistance(capture, materials, settings);
+    {
+      const std::scoped_lock lock(reportMutex);
+      warnings.insert(capture.warnings.begin(), capture.warnings.end());
+    }
     std::unique_lock lock(deviceMutex);
     const Replayed replayed = runFrame(options, [&](const auto& look) {
       return keepsHistory ? sequence.run(capture, materials, settings, look)
@@ -272,6 +279,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     }
     progress.advance();
   });
+  warn({warnings.begin(), warnings.end()});
   const std::size_t failedCount = failures.size() + missing.size();
   std::printf("%s\n%zu frames: %zu written, %d finished before, %zu failed\n", device.description().c_str(),
               frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failedCount, skipped,

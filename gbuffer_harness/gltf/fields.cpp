@@ -52,12 +52,14 @@ const std::vector<GltfField>& gltfFields() {
       {"samplers.*.magFilter", kNear, "texels are interpolated, not the nearest taken", "9729"},
       {"materials.*.alphaMode,alphaCutoff,doubleSided", kUsed},
       {"materials.*.pbrMetallicRoughness.baseColorFactor", kUsed},
-      {"materials.*.pbrMetallicRoughness.baseColorTexture,metallicRoughnessTexture.index,texCoord", kUsed},
+      {"materials.*.pbrMetallicRoughness.baseColorTexture.index,texCoord", kUsed},
       {"materials.*.pbrMetallicRoughness.metallicFactor,roughnessFactor", kNoEffect,
+       "of specular light; a medium is no metal"},
+      {"materials.*.pbrMetallicRoughness.metallicRoughnessTexture.**", kNoEffect,
        "of specular light; a medium is no metal"},
       {"materials.*.normalTexture.index,texCoord,scale", kUsed},
       {"materials.*.occlusionTexture.**", kNoEffect, "the traced irradiance has the shadows of the mesh"},
-      {"materials.*.emissiveFactor", kLeftOut, "its glow lights nothing; --light adds a light"},
+      {"materials.*.emissiveFactor", kLeftOut, "its glow lights nothing; --light adds a light", "[0, 0, 0]"},
       {"materials.*.emissiveTexture.**", kNoEffect, "multiplies emissiveFactor"},
 
       {"EXT_meshopt_compression.buffer,byteOffset,byteLength,byteStride,count,mode,filter,fallback", kUsed},
@@ -156,11 +158,6 @@ Fit fit(const std::vector<std::string>& rule, const std::vector<std::string>& pa
   return path.size() == rule.size() ? Fit::Whole : Fit::Below;
 }
 
-bool isNothing(const GltfJson& value) {
-  if (value.is_array()) return std::all_of(value.begin(), value.end(), isNothing);
-  return value == 0 || value == false || (value.is_object() && value.empty());
-}
-
 // Walks over a file's JSON, and keeps a sentence of each kind of field.
 class Walk {
 public:
@@ -219,8 +216,9 @@ private:
     if (isNew) entry->second = knownAt(path);
     const auto [rule, leads] = entry->second;
     if (rule) {
-      const bool says =
-          rule->use != kUsed && rule->use != kNoEffect && !isNothing(value) && value.dump() != rule->silent;
+      // A number 0 may be an index: only the list knows values that say nothing.
+      const bool says = rule->use != kUsed && rule->use != kNoEffect &&
+                        (!*rule->silent || value != GltfJson::parse(rule->silent));
       if (says) add(rule->path, place + ": " + rule->sentence);
     } else if (leads && value.is_object()) {
       object(value, place, path);

@@ -23,7 +23,7 @@ struct GltfField {
   const char* path;
   FieldUse use;
   const char* sentence = "";  // of all but Used
-  const char* silent = "";    // JSON of a value that needs no sentence, besides 0, false and arrays of 0
+  const char* silent = "";    // JSON of a value that needs no sentence
 };
 const std::vector<GltfField>& gltfFields();
 

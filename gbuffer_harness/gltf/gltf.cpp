@@ -202,9 +202,9 @@ private:
   GltfScene scene_;
   std::vector<std::optional<glm::dmat4>> worldFromNode_;  // of the nodes in the scene
   std::vector<glm::dvec3> positions_;                     // of scene_.model.vertices
-  std::map<int, Drawn> drawn_;                    // by glTF material
-  std::vector<PellucidMaterial> compiled_;        // of scene_.model.materials
-  std::map<std::pair<int, bool>, int> textures_;  // by glTF texture and whether it is a normal map
+  std::map<int, Drawn> drawn_;                            // by glTF material
+  std::vector<PellucidMaterial> compiled_;                // of scene_.model.materials
+  std::map<std::pair<int, bool>, int> textures_;          // by glTF texture and whether it is a normal map
 };
 
 void Loader::sayIgnored() {
@@ -304,9 +304,10 @@ void Loader::checkVertices() const {
       // Without normals each triangle gets vertices of its own.
       const auto position = primitive.attributes.find("POSITION");
       const bool flat = primitive.attributes.count("NORMAL") == 0 && primitive.indices != -1;
-      const auto accessor = static_cast<std::size_t>(flat                                     ? primitive.indices
-                                                     : position == primitive.attributes.end() ? -1
-                                                                                              : position->second);
+      const auto accessor =
+          static_cast<std::size_t>(flat                                     ? primitive.indices
+                                   : position == primitive.attributes.end() ? -1
+                                                                            : position->second);
       // An accessor of too many vertices is refused where it is read: that error names the accessor.
       if (accessor < model.accessors.size() && model.accessors[accessor].count <= kMaxVertices)
         vertices += model.accessors[accessor].count;
@@ -389,6 +390,9 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     document_.fail("nodes[" + std::to_string(node) + "]", "a camera is scaled by 0");
   result.viewFromWorld = lookAt(fromGlm(frame.position),
                                 fromGlm(frame.position - glm::normalize(frame.backward)), fromGlm(frame.up));
+  if (glm::determinant(glm::dmat3(world)) < 0)
+    scene_.warnings.push_back("nodes[" + std::to_string(node) +
+                              "]: a negative scale mirrors its camera, whose picture is drawn unmirrored");
   scene_.model.cameras.push_back(result);
 }
 

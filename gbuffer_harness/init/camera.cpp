@@ -17,6 +17,7 @@ struct Attributes {
   std::string file;  // of worldToCamera, or else of worldToNDC
   std::optional<Matrix> worldToCamera, worldToNdc;
   std::optional<double> screenWindowWidth, pixelAspectRatio;
+  std::optional<std::array<double, 2>> screenWindowCenter;
 };
 
 Attributes attributesOf(const std::vector<std::filesystem::path>& files) {
@@ -32,6 +33,7 @@ Attributes attributesOf(const std::vector<std::filesystem::path>& files) {
     take(all.worldToCamera, file.findMatrix("worldToCamera"));
     take(all.worldToNdc, file.findMatrix("worldToNDC"));
     if (!all.screenWindowWidth) all.screenWindowWidth = file.findNumber("screenWindowWidth");
+    if (!all.screenWindowCenter) all.screenWindowCenter = file.findPair("screenWindowCenter");
     if (!all.pixelAspectRatio) all.pixelAspectRatio = file.findNumber("pixelAspectRatio");
   }
   return all;
@@ -133,6 +135,10 @@ GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int w
     // 1 is what every file has whose program says nothing.
     const double fov = 2 * std::atan(*attributes.screenWindowWidth / aspect / 2);
     camera.clipFromView = perspective(fov, aspect, range);
+    // The center is a place in the plane at distance 1, y up, as the width is a length there.
+    const auto [x, y] = attributes.screenWindowCenter.value_or(std::array<double, 2>{});
+    camera.clipFromView[8] += camera.clipFromView[0] * x;
+    camera.clipFromView[9] += camera.clipFromView[5] * y;
     camera.why = "the attribute screenWindowWidth, " + degrees(fov) + " vertically";
   } else {
     throw UsageError(

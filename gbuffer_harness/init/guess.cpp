@@ -43,7 +43,7 @@ void addPart(const std::filesystem::path& path, const ExrFile& file, int part,
     layers[layer][componentOf(channel.substr(dot + 1))] = channel;
   }
   for (auto& [layer, components] : layers) {
-    ChannelGroup group{path, part, layer, !layer.empty(), {}};
+    ChannelGroup group{path, part, layer, !layer.empty(), file.viewOf(part, components.begin()->second), {}};
     if (layer.empty()) group.name = file.partCount() > 1 ? file.partName(part) : path.stem().string();
     const auto add = [&](std::vector<std::string> channels) {
       if (channels.empty()) return;

@@ -49,6 +49,8 @@ private:
   void mapFoundIds(const std::map<long, std::size_t>& stored, Json& json);
   void addMaterial();
   void addBlackness();
+  std::vector<ChannelGroup> ofOneView(std::vector<ChannelGroup> groups);
+  void addAttributes();
   void nameUnused(const std::vector<ChannelGroup>& groups);
   void addCamera();
   void addMissing();
@@ -126,7 +128,8 @@ DepthFacts Builder::depthFacts() const {
   if (count == 0)
     throw InputError(guesses_.at(Role::FrontDepth).group.file.string(), "frontDepth",
                      std::any_of(front_.data.begin(), front_.data.end(), [](float v) { return v < 0; })
-                         ? "no depth is above 0, but some are negative; negate view z, which is positive in front of the eye"
+                         ? "no depth is above 0, but some are negative; negate view z, which is positive in "
+                           "front of the eye"
                          : "no pixel holds a surface");
   DepthFacts facts;
   const bool couldBe = most <= 1;
@@ -266,6 +269,34 @@ void Builder::addBlackness() {
       "in a pass of their own, which has diffused already; render the irradiance with diffuse shaders");
 }
 
+// A capture has one eye: of stereo files, the first that has a color.
+std::vector<ChannelGroup> Builder::ofOneView(std::vector<ChannelGroup> groups) {
+  std::string taken, left;
+  for (const ChannelGroup& group : groups)
+    if (taken.empty() && group.channels.size() == 3) taken = group.view;
+  if (taken.empty()) return groups;
+  std::erase_if(groups, [&](const ChannelGroup& group) {
+    const bool isOther = !group.view.empty() && group.view != taken;
+    if (isOther && left.find("\"" + group.view + "\"") == std::string::npos)
+      left += " \"" + group.view + "\"";
+    return isOther;
+  });
+  if (!left.empty()) result_.found.push_back("view: \"" + taken + "\" is taken; left out:" + left);
+  return groups;
+}
+
+// Colors that are no linear Rec. 709.
+void Builder::addAttributes() {
+  for (const Role role : {Role::Irradiance, Role::Albedo}) {
+    if (!guesses_.count(role)) continue;
+    const ChannelGroup& group = guesses_.at(role).group;
+    std::string said;
+    for (const std::string& sentence : ExrFile(group.file).unusedAttributes(group.part))
+      said += (said.empty() ? "" : "; ") + sentence;
+    if (!said.empty()) doubt("colors of " + std::string(roleName(role)), said);
+  }
+}
+
 void Builder::nameUnused(const std::vector<ChannelGroup>& groups) {
   std::string list;
   for (const ChannelGroup& group : groups) {
@@ -309,7 +340,7 @@ void Builder::addMissing() {
 }
 
 GuessedManifest Builder::build() {
-  const std::vector<ChannelGroup> groups = survey(files_);
+  const std::vector<ChannelGroup> groups = ofOneView(survey(files_));
   guesses_ = guessRoles(groups, words_.roles);
   for (const Role role : {Role::FrontDepth, Role::Irradiance}) {
     if (guesses_.count(role)) continue;
@@ -334,6 +365,7 @@ GuessedManifest Builder::build() {
   leaveOutNormals();
   addMaterial();
   addBlackness();
+  addAttributes();
   nameUnused(groups);
   result_.json["lights"] = words_.lights;
   result_.json["materials"] = Json::array({materialJson(parseMaterial("--material", words_.material))});

@@ -20,6 +20,7 @@ struct ChannelGroup {
   int part = 0;
   std::string name;      // of the layer; else of the part, or of the file without extension
   bool isNamed = false;  // by a layer
+  std::string view;      // of stereo files; empty: of all
   // Full names: of a color R, G, B, of a vector X, Y, Z, else of each channel by itself.
   std::vector<std::string> channels;
 };

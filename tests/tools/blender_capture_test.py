@@ -3,6 +3,7 @@
     python3 blender_capture_test.py BLENDER TOOLS_FOLDER PELLUCID_COMMAND
 """
 import json
+import math
 import os
 import subprocess
 import sys
@@ -245,6 +246,59 @@ class BlenderCapture(unittest.TestCase):
                  "table['used'] = table['used'].replace('shift_*', '')\n"
                  "b.say_what_is_left_out(graph); assert any('its shift_x is 0.25' in s for s in b.SAID), b.SAID") % TOOLS
         run(BLENDER, "-b", self.scene, "--python-exit-code", "1", "--python-expr", check)
+
+    def test_metal_takes_light_before_it_enters_the_medium(self):
+        metal = ("bpy.data.materials['wax'].node_tree.nodes['Principled BSDF'].inputs['Metallic'].default_value = %g; "
+                 "bpy.data.objects['Icosphere.001'].hide_render = True")
+        albedo, media = [], []
+        for part in (0, 0.5):
+            self.capture(f"metal{part}", "--shadow-size", "16", "--samples", "1", setup=metal % part)
+            albedo.append(max(self.info(f"metal{part}/capture.json")["buffers"]["albedo"]["range"]))
+            media.append(self.manifest(f"metal{part}/capture.json")["materials"])
+        self.assertEqual(media[0], media[1])
+        self.assertAlmostEqual(albedo[1], albedo[0] / 2, delta=1e-3)
+
+    def test_the_irradiance_has_the_lobe_of_principled(self):
+        # At grazing angles Disney's diffuse lobe of roughness 1 is brighter than that of roughness 0.
+        rough = ("bpy.data.materials['wax'].node_tree.nodes['Principled BSDF'].inputs['Roughness'].default_value = %g; "
+                 "bpy.data.objects['Key'].hide_render = bpy.data.objects['Icosphere.001'].hide_render = True; "
+                 "bpy.data.objects['Rim'].rotation_euler = (1.47, 0, 0)")
+        light = []
+        for part in (0, 1):
+            self.capture(f"rough{part}", "--shadow-size", "16", "--samples", "1", setup=rough % part)
+            light.append(self.info(f"rough{part}/capture.json")["buffers"]["irradiance"]["range"][1])
+        self.assertGreater(light[1], 1.02 * light[0])
+
+    def test_settings_outside_a_capture_are_named(self):
+        setup = ("c = scene.cycles; c.film_exposure = 2; c.sample_clamp_direct = 1; c.filter_width = 4; scene.view_settings.exposure = 1\n"
+                 "scene.camera.data.clip_start = 45; scene.background_set = bpy.data.scenes.new('set')\n"
+                 "w = bpy.data.worlds.new('air'); scene.world = w; w.use_nodes = True; t = w.node_tree\n"
+                 "t.links.new(t.nodes.new('ShaderNodeVolumeScatter').outputs[0], t.nodes['World Output'].inputs['Volume'])\n"
+                 "t = bpy.data.materials['stone'].node_tree; a = t.nodes['Principled BSDF'].inputs['Alpha']\n"
+                 "t.links.new(t.nodes.new('ShaderNodeLightPath').outputs['Is Camera Ray'], a)")
+        said = self.capture("settings", "--shadow-size", "16", "--samples", "1", setup=setup)
+        for words in ("(film_exposure)", "(sample_clamp_direct)", "(filter_width)", "view settings: the view's exposure",
+                      "near plane at 45 cuts", "scene set, the background set", "world air: light that comes through passes its volume",
+                      "material stone: node Light Path"):
+            self.assertIn(words, said)
+
+    def test_spread_and_temperature_are_followed(self):
+        setup = ("[bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"
+                 "for name, spread in (('wide', 3.1415927), ('narrow', 1)):\n"
+                 "  data = bpy.data.lights.new(name, 'AREA'); data.energy = 400; data.spread = spread; data.use_nodes = True\n"
+                 "  thing = bpy.data.objects.new(name, data); scene.collection.objects.link(thing); thing.location = (0, 0, 40)\n"
+                 "  tree = data.node_tree; node = tree.nodes.new('ShaderNodeBlackbody'); node.inputs[0].default_value = 2500\n"
+                 "  tree.links.new(node.outputs[0], tree.nodes['Emission'].inputs['Color'])")
+        self.assertNotIn("Blackbody", self.capture("spread", "--shadow-size", "16", "--samples", "1", setup=setup))
+        lights = {record["angleTable"][11] > 0: record for record in self.manifest("spread/capture.json")["lights"]}
+        wide, narrow = lights[True], lights[False]
+        # The same power in a narrow cone.
+        power = [sum(factor * math.sin(math.pi * i / 63) for i, factor in enumerate(record["angleTable"])) * record["intensity"]
+                 for record in (wide, narrow)]
+        self.assertAlmostEqual(power[1] / power[0], 1, delta=0.02)
+        # Cycles' own blackbody of 2500 K: 2.0676 .7693 .1394.
+        for found, right in zip(wide["color"], (1, 0.372, 0.0674)):
+            self.assertAlmostEqual(found, right, delta=0.02)
 
     def test_emitting_meshes_light_hidden_faces(self):
         setup = ("[bpy.data.objects.remove(o) for o in list(scene.objects) if o.type in ('LIGHT', 'EMPTY')]\n"

@@ -1,20 +1,25 @@
 // What OpenEXR files may be: every layout that is read, and every one that is refused by name.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
 #include <ImfTileDescriptionAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "capture/exr.h"
+#include "capture/exr_attributes.h"
 #include "unit/capture_samples.h"
 
 namespace pellucid::harness {
@@ -180,6 +185,75 @@ TEST_F(ExrFiles, DeepPartsAreRefusedByName) {
   }
   manifest["buffers"]["albedo"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
   expectNames(error(), {"x.exr", "part 0", "deepscanline"});
+}
+
+// ACES' primaries, as renderers write them.
+const Imf::Chromaticities kAces({0.713f, 0.293f}, {0.165f, 0.83f}, {0.128f, 0.044f}, {0.32168f, 0.33767f});
+
+TEST_F(ExrFiles, AttributesThatChangeColorsAreNamed) {
+  manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  const auto warnings = [&](const auto& change) {
+    Imf::Header header(kSampleWidth, kSampleHeight);
+    change(header);
+    write(header, {{"V", &values}});
+    return read().warnings;
+  };
+  const auto none = warnings([](Imf::Header&) {});
+  EXPECT_EQ(none, std::vector<std::string>());
+  EXPECT_EQ(warnings([](Imf::Header& h) { Imf::addChromaticities(h, Imf::Chromaticities()); }), none);
+  EXPECT_EQ(warnings([](Imf::Header& h) { h.insert("oiio:ColorSpace", Imf::StringAttribute("lin_rec709")); }),
+            none);
+  EXPECT_EQ(warnings([](Imf::Header& h) {
+              Imf::addWhiteLuminance(h, 100.0f);  // a scale for displays
+              h.insert("somebody's", Imf::StringAttribute("own"));
+            }),
+            none);
+  const auto aces = warnings([](Imf::Header& h) { Imf::addChromaticities(h, kAces); });
+  ASSERT_EQ(aces.size(), 1u);
+  expectNames(aces[0],
+              {"buffers.irradiance", "x.exr", "chromaticities", "red", "(0.713, 0.293)", "linear Rec. 709"});
+  for (const char* name : {"colorInteropID", "oiio:ColorSpace"}) {
+    const auto said =
+        warnings([&](Imf::Header& h) { h.insert(name, Imf::StringAttribute("lin_ap1_scene")); });
+    ASSERT_EQ(said.size(), 1u) << name;
+    expectNames(said[0], {name, "lin_ap1_scene"});
+  }
+}
+
+// Whatever the list calls named or refused has a test here, and all that OpenEXR itself adds to a header is
+// in it.
+TEST_F(ExrFiles, EveryAttributeOfTheListIsAccountedFor) {
+  std::set<std::string> told, known;
+  for (const ExrAttribute& attribute : exrAttributes()) {
+    known.insert(attribute.name);
+    if (attribute.use == AttributeUse::Named || attribute.use == AttributeUse::Refused)
+      told.insert(attribute.name);
+  }
+  EXPECT_EQ(told, (std::set<std::string>{
+                      "chromaticities", "colorInteropID", "oiio:ColorSpace", "envmap", "deepImageState",
+                      "maxSamplesPerPixel"}));  // the last two are of deep files, which are refused
+  const Imf::Header plain(4, 4);
+  for (auto i = plain.begin(); i != plain.end(); ++i) EXPECT_TRUE(known.count(i.name())) << i.name();
+}
+
+TEST_F(ExrFiles, PanoramasAreRefused) {
+  Imf::Header header(kSampleWidth, kSampleHeight);
+  Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
+  write(header, {{"V", &values}});
+  manifest["buffers"]["albedo"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  expectNames(error(), {"x.exr", "part 0 envmap", "panorama"});
+}
+
+TEST_F(ExrFiles, BuffersAreOfOneEye) {
+  Imf::Header header(kSampleWidth, kSampleHeight);
+  Imf::addMultiView(header, {"left", "right"});
+  write(header, {{"V", &values}, {"light.right.V", &values}, {"color.left.V", &values}});
+  manifest["buffers"]["irradiance"] = {{"file", "x.exr"}, {"channels", {"V", "V", "V"}}};
+  manifest["buffers"]["albedo"] = {{"file", "x.exr"},
+                                   {"channels", {"color.left.V", "color.left.V", "color.left.V"}}};
+  read();
+  manifest["buffers"]["irradiance"]["channels"] = {"light.right.V", "light.right.V", "light.right.V"};
+  expectNames(error(), {"x.exr", "buffers.albedo", "\"right\"", "\"left\"", "one eye"});
 }
 
 TEST_F(ExrFiles, HugeImagesAreRefusedBeforeTheyAreRead) {

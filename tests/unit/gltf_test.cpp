@@ -142,14 +142,15 @@ TEST_F(Gltf, CamerasAndLights) {
        {"type", "orthographic"},
        {"orthographic", {{"xmag", 3}, {"ymag", 2}, {"znear", 0}, {"zfar", 50}}}}};
   b.json["extensionsUsed"] = {"KHR_lights_punctual", "VENDOR_thing"};
-  b.json["animations"] = {{{"name", "walk"}, {"channels", nlohmann::json::array()}, {"samplers", nlohmann::json::array()}}};
+  b.json["animations"] = {
+      {{"name", "walk"}, {"channels", nlohmann::json::array()}, {"samplers", nlohmann::json::array()}}};
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
       {{"type", "directional"}, {"color", {1, 0.5, 0}}, {"intensity", 3}},
       {{"type", "spot"}, {"range", 7}, {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.3}}}}};
   const double h = std::sqrt(0.5);
   b.json["nodes"].push_back(
       {{"name", "eye"}, {"camera", 0}, {"translation", {0, 0, 5}}, {"scale", {2, 2, 2}}});
-  b.json["nodes"].push_back({{"camera", 1}, {"rotation", {0, h, 0, h}}});
+  b.json["nodes"].push_back({{"camera", 1}, {"rotation", {0, h, 0, h}}, {"scale", {-1, 1, 1}}});
   b.json["nodes"].push_back(
       {{"rotation", {-h, 0, 0, h}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   b.json["nodes"].push_back(
@@ -178,9 +179,11 @@ TEST_F(Gltf, CamerasAndLights) {
   EXPECT_EQ(m.lights[1].position, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(m.lights[1].range, 7);
   EXPECT_EQ(m.lights[1].outerConeAngle, 0.3);
-  EXPECT_EQ(scene.warnings, (std::vector<std::string>{
-                                "extension VENDOR_thing is not known, and what it says is left out",
-                                "animations[0]: animations are left out: nodes stand in their rest pose"}));
+  EXPECT_EQ(scene.warnings,
+            (std::vector<std::string>{
+                "extension VENDOR_thing is not known, and what it says is left out",
+                "animations[0]: animations are left out: nodes stand in their rest pose",
+                "nodes[2]: a negative scale mirrors its camera, whose picture is drawn unmirrored"}));
 }
 
 TEST_F(Gltf, TexturesAreDecoded) {

@@ -1,10 +1,12 @@
 // Manifests for EXR files in the manner of other programs: each holds a frame that is known, and has to give
 // it back.
 #include <ImfChannelList.h>
+#include <ImfChromaticities.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +40,9 @@ protected:
     int component;
   };
   void write(const std::string& name, const std::vector<Channel>& channels,
-             const std::map<std::string, Imath::M44f>& matrices = {}) const {
-    Imf::Header header(frame_.width, frame_.height);
+             const std::map<std::string, Imath::M44f>& matrices = {},
+             Imf::Header header = Imf::Header(1, 1)) const {
+    header.dataWindow() = header.displayWindow() = {{0, 0}, {frame_.width - 1, frame_.height - 1}};
     Imf::FrameBuffer buffer;
     for (const auto& [attribute, matrix] : matrices) header.insert(attribute, Imf::M44fAttribute(matrix));
     for (const Channel& c : channels) {
@@ -160,6 +163,56 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   EXPECT_NE(guessed.missing[0].find("lights: without a light"), std::string::npos);
   EXPECT_TRUE(guessed.json.contains("// lights"));
   EXPECT_TRUE(guessed.json["buffers"]["irradiance"]["includesAlbedo"]);
+}
+
+// A window of other pixels, off the axis, and of other primaries: the camera has it, and the colors are
+// named.
+TEST_F(Init, HeadersSayWindowsAndColors) {
+  Imf::Header header(1, 1);
+  header.pixelAspectRatio() = 2;
+  header.screenWindowWidth() = 0.5f;
+  header.screenWindowCenter() = {0.1f, -0.05f};
+  Imf::addChromaticities(
+      header, Imf::Chromaticities({0.708f, 0.292f}, {0.17f, 0.797f}, {0.131f, 0.046f}, {0.3127f, 0.329f}));
+  std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  write("window.exr", channels, {}, header);
+  const GuessedManifest guessed = guess({"window.exr"}, {});
+  const Matrix clip = read(guessed).clipFromView;
+  EXPECT_NEAR(clip[0], 4, 1e-6);  // 2 / width
+  EXPECT_NEAR(clip[5], -4 * 2 * frame_.width / double(frame_.height), 1e-5);
+  // The window's center, at distance 1, is the image's.
+  for (const int row : {0, 1}) {
+    const double x = clip[row] * 0.1f + clip[4 + row] * -0.05f - clip[8 + row];
+    EXPECT_NEAR(x, 0, 1e-6) << row;
+  }
+  EXPECT_EQ(std::count_if(guessed.missing.begin(), guessed.missing.end(),
+                          [](const std::string& s) {
+                            return s.find("colors of irradiance: chromaticities: red") == 0;
+                          }),
+            1);
+}
+
+// A file of two eyes gives the frame of the first.
+TEST_F(Init, StereoFilesGiveOneEye) {
+  const Image other = times(frame_.irradiance, frame_.irradiance, 3);
+  std::vector<Channel> channels = triple("irradiance.right.", "RGB", other);
+  for (const auto& layer : {triple("irradiance.left.", "RGB", frame_.irradiance)})
+    channels.insert(channels.end(), layer.begin(), layer.end());
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  channels.push_back({"depth.right.Z", &frame_.irradiance, 0});
+  Imf::Header header(1, 1);
+  Imf::addMultiView(header, {"left", "right"});
+  write("eyes.exr", channels, {}, header);
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  const GuessedManifest guessed = guess({"eyes.exr"}, words);
+  const Capture capture = read(guessed);
+  EXPECT_TRUE(sameBits(capture.irradiance, frame_.irradiance));
+  EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
+  EXPECT_EQ(
+      std::count(guessed.found.begin(), guessed.found.end(), "view: \"left\" is taken; left out: \"right\""),
+      1);
 }
 
 // A file for each texture of four channels, a reversed depth buffer: what RenderDoc saves.
