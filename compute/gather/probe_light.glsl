@@ -125,7 +125,7 @@ struct GatherRings {
   vec3 axis;
   float t, axisCosine; // along the axis from x to the lit surface; of the axis with the light's ray
   float entrySide;     // of the map's entry points of the level
-  float perQuad;       // 1 / side of the quad of level 1 at x, facing the camera
+  float perFacet;      // 1 / the reach of the facet at x, two pixels, facing the camera
   float ahead;         // along the light's ray from x to what the light meets
   float nearest;       // likewise, to where it enters a medium beside x
   float tolerance;     // how far a receiver's own exit may be off
@@ -167,7 +167,7 @@ bool gatherRings(LightConstants light, Surface x, vec3 toLight, float distanceTo
   float facing = max(-dot(x.normal, toLight), 0.0);
   rings.axis = normalize(toLight - facing * x.normal); // the two are within 90 degrees
   rings.axisCosine = dot(rings.axis, toLight);
-  rings.perQuad = 0.5 / max(pixelSize(frame.camera, x.position.z * frame.camera.range.x).x, 1.0e-30);
+  rings.perFacet = 0.5 / max(pixelSize(frame.camera, x.position.z * frame.camera.range.x).x, 1.0e-30);
   rings.t = rings.ahead = rings.nearest = rings.behindExit = rings.shadowed = 0.0;
   vec3 point;
   if (!findMap(light, x.position, rings.map, point)) return false;
@@ -298,8 +298,8 @@ void addSample(inout Gathered sum, GatherRings rings, Surface x, uint m, vec4 le
                float flux) {
   float squared = dot(to, to);
   float turned = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
-  // A quad has one normal: what turns less than a quarter within its side is one surface, through which no light comes.
-  float opposite = turned * mix(min(sqrt(squared) * rings.perQuad, 1.0), 1.0, min(2.0 * turned, 1.0));
+  // What turns less than a quarter within the reach of a facet is one surface, through which no light comes.
+  float opposite = turned * mix(min(sqrt(squared) * rings.perFacet, 1.0), 1.0, min(2.0 * turned, 1.0));
   float through = max(-dot(entry.normal, to), 0.0), squaredH = through * max(dot(x.normal, to), 0.0) / max(turned, 1.0e-4);
   float h = sqrt(min(squaredH, squared));
   float curved = (1.0 - turned) * min(squaredH / max(squared, 1.0e-12), 1.0);

@@ -8,6 +8,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+using namespace pellucid::harness;
 using namespace pellucid::test;
 
 TEST_F(Cli, CaptureReplayComparePlan) {
