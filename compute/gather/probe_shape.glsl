@@ -3,7 +3,7 @@
 #define PELLUCID_PROBE_SHAPE_GLSL
 
 #include "diffusion/texel.glsl"
-#include "frame/surface_images.glsl"
+#include "frame/facet.glsl"
 #include "gather/probe.glsl"
 #include "gather/probe_light.glsl"
 #include "lib/surface.glsl"

@@ -3,8 +3,8 @@
 #define PELLUCID_TEXEL_ENTRY_GLSL
 
 #define MORE_SHADOW_IMAGES
+#include "frame/facet.glsl"
 #include "frame/shadow_images.glsl"
-#include "frame/surface_images.glsl"
 #include "gather/entry_point.glsl"
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"

@@ -24,7 +24,6 @@ bool mayUse(uint use) { return true; }
 #else
 #include "frame/frame.glsl"
 #include "frame/shadow_images.glsl"
-#include "frame/surface_images.glsl"
 layout(set = 0, binding = PELLUCID_BINDING_SHADOWS) uniform Shadows { ShadowConstants shadows[PELLUCID_DISPATCH_SHADOWS]; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_HIDDEN_IRRADIANCE) uniform texture2D hiddenIrradianceImage;
@@ -36,7 +35,7 @@ bool mayUse(uint use) { return (kUses & use) != 0u; }
 vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
 #endif
 
-#include "lib/facet.glsl"
+#include "frame/facet.glsl"
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.
 bool isThinWalled(uint material) {

@@ -157,8 +157,8 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxPerStageDescriptorUniformBuffers", &Limits::maxPerStageDescriptorUniformBuffers, 3},
               {"maxPerStageDescriptorStorageBuffers", &Limits::maxPerStageDescriptorStorageBuffers, 1},
               {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
-              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 16},
-              {"maxPerStageResources", &Limits::maxPerStageResources, 22}};
+              {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 15},
+              {"maxPerStageResources", &Limits::maxPerStageResources, 21}};
   for (const auto& [name, limit, needed] : rows) {
     NullDevice enough, less;
     enough.limits.*limit = needed;
@@ -172,8 +172,8 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
 
 TEST(ContextLimits, DescriptorsThatArePushedAndFormatsAreNamed) {
   NullDevice few;
-  few.mostPushed = 21;
-  EXPECT_NE(refusalOf(few).find("maxPushDescriptors 21; 22"), std::string::npos);
+  few.mostPushed = 20;
+  EXPECT_NE(refusalOf(few).find("maxPushDescriptors 20; 21"), std::string::npos);
   EXPECT_EQ(refusalOf(few, [](PellucidContextDesc& d) { d.options.descriptorPools = 1; }), "");
   NullDevice fixed;
   fixed.writesWithoutFormat = false;

@@ -125,7 +125,8 @@ TEST(ReferenceSurface, QuadsHaveTheNormalOfTheirPlane) {
       const std::optional<Surface> s = surfaces.at(x, y);
       ASSERT_TRUE(s);
       const glm::dvec3 expected = x + y == 0 ? glm::dvec3(0, 0, 1) : normal;
-      EXPECT_NEAR(glm::distance(s->normal, expected), 0, 1e-4) << x << ", " << y;
+      // Of pixels that no quad holds, the neighbor across the step counts a thousandth.
+      EXPECT_NEAR(glm::distance(s->normal, expected), 0, 2e-3) << x << ", " << y;
     }
 }
 

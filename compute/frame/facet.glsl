@@ -1,13 +1,22 @@
-// The facet of a pixel: what the depths around it say of its surface.
-//
-// A shader declares before it includes this file FrameConstants frame (a name, as a copy would take registers), and the functions
-//   float distanceOf(ivec2 pixel, uint material, bool back); // as translucency/transmission.glsl says
-//   ivec2 inLattice(ivec2 pixel); // where frame.camera counts from
-// and requires GL_EXT_control_flow_attributes.
+// The facet of a pixel: what the depths around it say of its surface. PELLUCID_OWN_INPUTS as in translucency/transmission.glsl.
+// Includers require GL_EXT_control_flow_attributes.
 #ifndef PELLUCID_FACET_GLSL
 #define PELLUCID_FACET_GLSL
 
 #include "lib/surface.glsl"
+
+#ifndef PELLUCID_OWN_INPUTS
+#include "frame/frame.glsl"
+
+layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
+
+float distanceOf(ivec2 pixel, uint material, bool back) {
+  ivec2 at = inImage(withinRect(inLattice(pixel)));
+  uint there = materialAt(at); // no load waits for another
+  float planar = back ? backDistanceOf(texelFetch(backDepthImage, at, 0).x) : frontDistance(at);
+  return at == pixel && there == material ? planar : -1.0;
+}
+#endif
 
 // The i-th of the four pixels beside a pixel: right, left, below, above.
 ivec2 pixelBeside(ivec2 pixel, int i) {
