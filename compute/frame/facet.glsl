@@ -18,6 +18,13 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
 }
 #endif
 
+// The latencies of loads at once overlap, which takes registers that the pass over all pixels does not have.
+#ifdef PELLUCID_TRANSMISSION_GLSL
+#define FACET_LOOP [[dont_unroll]]
+#else
+#define FACET_LOOP [[unroll]]
+#endif
+
 // The i-th of the four pixels beside a pixel: right, left, below, above.
 ivec2 pixelBeside(ivec2 pixel, int i) {
   int side = 1 - 2 * (i & 1);
@@ -27,8 +34,7 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
 // Unit normal of the front or back depths, towards the eye; 0: not known. `own`: the pixel's planar distance, above 0.
 vec3 facetAt(ivec2 pixel, uint material, float own, bool back) {
   vec4 beside;
-  // Loads at once, whose latencies overlap.
-  [[unroll]] for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
+  FACET_LOOP for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);
   if (!all(greaterThan(beside, vec4(0.0)))) {
     // Single pixels of hair lie between pixels of the surface.
     [[dont_unroll]] for (int i = 0; i < 4; ++i) {
