@@ -47,7 +47,8 @@ class Pellucid:
 
 
 def figures(pellucid, source):
-    size, images = ["--size", "256x256"], []  # of images: file, label, exposure
+    size = [] if "--size" in source else ["--size", "256x256"]
+    images = []  # file, label, exposure
     replayed = {}  # files by capture and options: figures share pictures
 
     def capture(name, *options):
@@ -172,8 +173,9 @@ def times(pellucid, source):
     necessary = cosines < 0
     picked = [i * FRAMES // TIMED for i in range(TIMED)]
     size = [] if "--size" in source else ["--size", "1280x720"]
-    pellucid.run("capture", *source, *size, "--camera", "auto", "--light=directional:0,-.2,-1", "--turntable", HEAD_TURN, "--light-turntable", LIGHT_TURN, "--frames",
-                 ",".join(str(k + 1) for k in picked), "-o", pellucid.path("turn.####.exr"))
+    pellucid.run("capture", *source, *size, "--camera", "auto", "--light=directional:0,-.2,-1", "--turntable", HEAD_TURN,
+                 "--light-turntable", LIGHT_TURN, "--frames", ",".join(str(k + 1) for k in picked), "-o",
+                 pellucid.path("turn.####.exr"))
 
     def mean(frames, *options):
         found = []
@@ -253,16 +255,20 @@ def light_through(pellucid, source, light, eye):
         return ",".join(f"{v:.6f}" for v in values)
 
     capture, triptych = pellucid.path("dot.exr"), pellucid.path("dot.png")
-    pellucid.run("capture", *source, "--size", "64x64", "--shadow-size", 128, "--projection", "orthographic", "--view=" + numbers(eye),
-                 "--light=directional:" + numbers(-light), "-o", capture)
+    pellucid.run("capture", *source, "--size", "64x64", "--shadow-size", 128, "--projection", "orthographic",
+                 "--camera", "auto", "--view=" + numbers(eye), "--light=directional:" + numbers(-light), "-o", capture)
     # Gathered light knows no minimum dot.
-    pellucid.run("replay", capture, "--repeat", 0, "--set", "features=translucency", "--set", "gather=0", "--exposure", 1, "--triptych",
-                 triptych, "-o", pellucid.path("dot.out.exr"))
+    linear = []
+    for exposure in (1, 32):  # eight bits of bright and of dark pixels
+        pellucid.run("replay", capture, "--repeat", 0, "--set", "features=translucency", "--set", "gather=0",
+                     "--exposure", exposure, "--triptych", triptych, "-o", pellucid.path("dot.out.exr"))
+        encoded = image.imread(triptych)[..., :3]
+        left = (encoded.shape[1] - 64) // 2
+        middle = encoded[:, left : left + 64]
+        linear.append(numpy.where(middle <= .04045, middle / 12.92, ((middle + .055) / 1.055) ** 2.4) / exposure)
+    light_alone = numpy.where(linear[1] < .99 / 32, linear[1], linear[0])
     pixels = sum(map(int, re.findall(r"^  material: index .* pixels (\d+)", pellucid.run("info", capture), re.M)))
-    encoded = image.imread(triptych)[..., :3]
-    middle = encoded[:, encoded.shape[1] // 3 : 2 * encoded.shape[1] // 3]
-    linear = numpy.where(middle <= .04045, middle / 12.92, ((middle + .055) / 1.055) ** 2.4)
-    return float(linear.sum()) / 3 / max(pixels, 1)
+    return float(light_alone.sum()) / 3 / max(pixels, 1)
 
 
 def dots(pellucid, source, entries=12, steps=6, threshold=.25):
@@ -317,7 +323,8 @@ def read_answers(file):
         answers[row[0], row[1]] = color
     participants, scenes = (list(dict.fromkeys(key[i] for key in answers)) for i in (0, 1))
     if len(participants) < 2 or len(scenes) < 2:
-        raise Refused(f"{file}: an analysis needs two participants and two scenes; there are {len(participants)} and {len(scenes)}")
+        raise Refused(f"{file}: an analysis needs two participants and two scenes; there are {len(participants)} and "
+                      f"{len(scenes)}")
     for participant, scene in itertools.product(participants, scenes):
         if (participant, scene) not in answers:
             raise Refused(f"{file}: \"{participant}\" has not answered scene \"{scene}\"")

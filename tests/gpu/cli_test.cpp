@@ -40,7 +40,8 @@ TEST_F(Cli, Statistics) {
   int blocks = 0, most = 0;
   const std::size_t line = outcome.text.find("blocks with material");
   ASSERT_NE(line, std::string::npos) << outcome.text;
-  ASSERT_EQ(std::sscanf(&outcome.text[line], "blocks with material %d %d", &blocks, &most), 2) << outcome.text;
+  ASSERT_EQ(std::sscanf(&outcome.text[line], "blocks with material %d %d", &blocks, &most), 2)
+      << outcome.text;
   EXPECT_EQ(blocks, 1);
   EXPECT_EQ(most, 9);
   EXPECT_TRUE(fs::exists(path("out.png")));
@@ -67,6 +68,30 @@ TEST_F(Cli, Sheets) {
   expect(2, sweep + " " + path("ear.12.exr") + " --sweep gather=0" + out, "--sweep: takes one capture");
   expect(2, sweep + " --sweep color=red" + out, "unknown key \"color\"");
   expect(3, sweep + " --sweep material=jade" + out, "jade");
+}
+
+// The settings of a file are those of the command line.
+TEST_F(Cli, SettingsOfAFile) {
+  const std::string capture = path("ear.exr"), replay = "replay " + capture + " --repeat 0 -o ";
+  expect(0, "capture --procedural ear --size 24x24 --shadow-size 32 -o " + capture);
+  std::ofstream(path("s.json"))
+      << R"({"angle": "minimum-dot-azimuth", "face": [0, 0, 1], "center": [1, 2, 3], "minimum-dots": [-0.1, -0.6, -0.3]})";
+  expect(0, replay + path("file.exr") + " --set @" + path("s.json"), "wrote");
+  expect(0,
+         replay + path("list.exr") +
+             " --set angle=minimum-dot-azimuth --set center=1,2,3 --set minimum-dots=-.1,-.6,-.3",
+         "wrote");
+  expect(0, replay + path("plain.exr"), "wrote");
+  expect(0, "compare " + path("file.exr") + " " + path("list.exr") + " --limit max=0", "");
+  expect(1, "compare " + path("file.exr") + " " + path("plain.exr") + " --limit max=0", "limit");
+  expect(3, "replay x.exr --set @" + path("none.json"), "none.json: cannot be read");
+  for (const auto& [text, sentence] : {std::pair("[1]", "s.json: is not an object of settings"),
+                                       {"{\"angle\": ", "s.json: not valid JSON"},
+                                       {"{\"colour\": 1}", "s.json: colour: is not a key of --set"},
+                                       {"{\"face\": [0, \"x\", 0]}", "s.json: face[1]"}}) {
+    std::ofstream(path("s.json")) << text;
+    expect(3, "replay x.exr --set @" + path("s.json"), sentence);
+  }
 }
 
 TEST_F(Cli, UsageErrors) {
@@ -169,7 +194,8 @@ TEST_F(Cli, GuardedStressNamesTheExtensionThatADeviceLacks) {
   EXPECT_NE(outcome.text.find("VK_EXT_external_memory_host is missing"), std::string::npos) << outcome.text;
 }
 
-// A frame that found a fault, which is mended: without the fine filter a pixel at an edge counted less than 0.
+// A frame that found a fault, which is mended: without the fine filter a pixel at an edge counted less than
+// 0.
 TEST_F(Cli, StressFrameThatFoundAFaultHolds) {
   expect(0, "stress --seed 303 --first 26 --frames 1 --pixels 12000000 --only more-irradiance",
          "seed 303, frames 26 to 26, ");
