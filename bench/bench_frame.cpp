@@ -115,8 +115,8 @@ Resource BenchFrame::planned(uint32_t binding) const {
   return imageOf(run_.frame(), b->resource);
 }
 
-std::shared_ptr<GpuImage> BenchFrame::image(VkFormat format) const {
-  auto result = std::make_shared<GpuImage>(device_, width_, height_, format);
+std::shared_ptr<GpuImage> BenchFrame::image() const {
+  auto result = std::make_shared<GpuImage>(device_, width_, height_, VK_FORMAT_R16G16B16A16_SFLOAT);
   result->clear();
   return result;
 }

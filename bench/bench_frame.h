@@ -1,5 +1,5 @@
-// Passes of published methods, and a frame on the device for these passes, which read the images and constants that the
-// module's plan binds.
+// Passes of published methods, and a frame on the device for these passes, which read the images and
+// constants that the module's plan binds.
 #pragma once
 
 #include <array>
@@ -92,9 +92,9 @@ public:
 
   const harness::FrameRun& run() const { return run_; }
 
-  // A cleared image of the frame's size.
-  std::shared_ptr<harness::GpuImage> image(VkFormat format = VK_FORMAT_R16G16B16A16_SFLOAT) const;
-  // Bytes of so many images of the default format.
+  // A cleared image of the frame's size, RGBA of halves.
+  std::shared_ptr<harness::GpuImage> image() const;
+  // Bytes of so many of them.
   std::uint64_t bytesOf(std::uint64_t images) const;
 
 private:

@@ -40,9 +40,9 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// The floor: microseconds of one pass over two depths, an irradiance and an output of this size, in the fastest
-// of several workgroup shapes. The images hold noise, which no device compresses. Throws DeviceError when a
-// pass wrote something else than its inputs say: a floor that skips work would be no floor.
+// The floor: microseconds of one pass over two depths, an irradiance and an output of this size, in the
+// fastest of several workgroup shapes. The images hold noise, which no device compresses. Throws DeviceError
+// when a pass wrote something else than its inputs say: a floor that skips work would be no floor.
 double measureFloor(Device& device, int width, int height, int repeat) {
   struct Shape {
     uint32_t width, height, pixels;  // of a group in threads; pixels of each thread
@@ -83,43 +83,6 @@ double measureFloor(Device& device, int width, int height, int repeat) {
   return fastest;
 }
 
-struct TimedError {
-  std::string name;
-  double error, time;  // relative RMSE; microseconds
-};
-
-// A logarithmic axis from decade to decade.
-Axis decades(const std::string& label, const std::vector<TimedError>& points, double TimedError::*value) {
-  const auto [low, high] =
-      std::minmax_element(points.begin(), points.end(),
-                          [&](const TimedError& a, const TimedError& b) { return a.*value < b.*value; });
-  return {label, true, std::pow(10, std::floor(std::log10(*low.*value))),
-          std::pow(10, std::ceil(std::log10(*high.*value)))};
-}
-
-// A family of variants is a color: what stands before the comma of its members' names. `from`: what errors
-// are from.
-Plot timeAgainstError(const std::string& title, const std::vector<TimedError>& points,
-                      const std::string& from) {
-  const Color colors[] = {{200, 30, 30},  {30, 90, 200},  {20, 140, 60},
-                          {150, 80, 160}, {220, 140, 20}, {80, 80, 80}};
-  Plot plot;
-  plot.title = title;
-  plot.x = decades("relative RMSE from " + from, points, &TimedError::error);
-  plot.y = decades("microseconds", points, &TimedError::time);
-  for (const TimedError& p : points) {
-    const std::string family = p.name.substr(0, p.name.find(','));
-    auto series = std::find_if(plot.series.begin(), plot.series.end(),
-                               [&](const Series& s) { return s.name == family; });
-    if (series == plot.series.end())
-      series =
-          plot.series.insert(series, {family, colors[plot.series.size() % std::size(colors)], {}, {}, true});
-    series->x.push_back(p.error);
-    series->y.push_back(p.time);
-  }
-  return plot;
-}
-
 // One frame at one size.
 class FrameBench {
 public:
@@ -147,8 +110,8 @@ public:
   std::string size() const { return std::to_string(capture_.width) + "x" + std::to_string(capture_.height); }
   const Capture& capture() const { return capture_; }
 
-  // Rows of everything. Returns times against errors of whole frames.
-  std::vector<TimedError> run(double floor) {
+  // Rows of everything.
+  void run(double floor) {
     head(floor);
     // Downloads leave the device idle: errors first, then times without a gap.
     measureErrors();
@@ -158,7 +121,6 @@ public:
       wholeFramesOfOthers();
     else
       report_.note("  others are left out: " + why_);
-    return std::move(points_);
   }
 
 private:
@@ -219,11 +181,6 @@ private:
       more["relative_rmse_rgb"] = found->second;
     }
     if (kind == "whole" && capture_.truth) more.update(errorFields(outputOf(device_, v), capture_));
-    if (kind == "whole") {
-      const auto against = more.find("truth_relative_rmse");
-      const std::optional<double> shown = against != more.end() ? against->get<double>() : error;
-      if (shown) points_.push_back({v.name, *shown, std::max(time.median, 1.0)});
-    }
     report_.add({v.name, v.dispatches, v.barriers, v.transientBytes, error, more}, time);
   }
 
@@ -323,31 +280,21 @@ private:
   std::shared_ptr<const BenchFrame> others_;
   std::vector<Variant> diffusionsOfOthers_;
   std::map<std::string, ChannelErrors> errors_;  // of diffusions, by name
-  std::vector<TimedError> points_;
 };
 
 }  // namespace
 
-std::map<std::string, std::vector<Plot>> measureFrames(Device& device, const Context& context,
-                                                       const std::vector<FrameSource>& sources,
-                                                       const FrameOptions& options, int repeat,
-                                                       Report& report) {
+void measureFrames(Device& device, const Context& context, const std::vector<FrameSource>& sources,
+                   const FrameOptions& options, int repeat, Report& report) {
   requireRightTransmittance(device, context, compileMaterial(PresetMaterial{"skin1"}, "skin1"));
   std::map<std::string, double> floors;  // by size
-  std::map<std::string, std::vector<Plot>> plots;
   for (const FrameSource& source : sources) {
     FrameBench bench(device, context, options, repeat, source, report);
     const auto [floor, isNew] = floors.try_emplace(bench.size());
-    if (isNew)
-      floor->second = measureFloor(device, bench.capture().width, bench.capture().height, repeat);
+    if (isNew) floor->second = measureFloor(device, bench.capture().width, bench.capture().height, repeat);
     report.setFloor(floor->second);
-    const std::vector<TimedError> points = bench.run(floor->second);
-    if (!points.empty())
-      plots[bench.size()].push_back(
-          timeAgainstError(bench.capture().name + ", " + bench.size(), points,
-                           bench.capture().truth ? "path tracing" : "brute force, of the diffusion"));
+    bench.run(floor->second);
   }
-  return plots;
 }
 
 }  // namespace pellucid::bench

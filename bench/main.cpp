@@ -1,7 +1,5 @@
 // pellucid_bench: GPU times of the module and of others beside their errors. What is timed is checked first.
 #include <cstdio>
-#include <filesystem>
-#include <map>
 #include <set>
 
 #include "commit.h"
@@ -31,15 +29,12 @@ public:
   Json measure(const Keep& keep) {
     std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
                  repeat_);
-    json_ = {{"device", device_.description()},
-             {"commit", PELLUCID_COMMIT},
-             {"repeat", repeat_}};
+    json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
     // Bad files are named before the context takes its time.
     std::vector<FrameSource> sources;
     if (wanted("frames")) sources = frameSources(device_, options_.frames);
     if (options_.tables != std::set<std::string>{"context"}) {
       measureTimes(sources);
-      writePlots();
       keep(withResults());
     }
     if (wanted("context")) measureContextCreation(options_.device, repeat_, report_);
@@ -55,21 +50,10 @@ private:
     return json;
   }
 
-  void writePlots() const {
-    for (const auto& [name, drawn] : plots_) {
-      if (options_.plot.empty() || drawn.empty()) continue;
-      std::filesystem::create_directories(options_.plot);
-      writePlot(options_.plot / (name + ".png"), drawn);
-    }
-  }
-
   void measureTimes(const std::vector<FrameSource>& sources) {
     const Context context(device_);
-    if (wanted("thesis")) measureThesis(device_, context, options_.frames, repeat_, report_);
     if (wanted("paths")) measurePaths(device_, context, options_.frames, repeat_, report_);
-    if (wanted("frames"))
-      for (auto& [size, frames] : measureFrames(device_, context, sources, options_.frames, repeat_, report_))
-        plots_["frames_" + size] = std::move(frames);
+    if (wanted("frames")) measureFrames(device_, context, sources, options_.frames, repeat_, report_);
   }
 
   const Options& options_;
@@ -79,7 +63,6 @@ private:
   std::FILE* table_;
   Report report_;
   Json json_;
-  std::map<std::string, std::vector<Plot>> plots_;
 };
 
 int run(const Options& options) {

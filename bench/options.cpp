@@ -25,7 +25,7 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--device", options.device, "part of the Vulkan device's name");
   app.add_option("--tables", options.tables, "which sections to measure, with commas")
       ->delimiter(',')
-      ->check(CLI::IsMember(std::set<std::string>{"frames", "paths", "context", "thesis"}))
+      ->check(CLI::IsMember(std::set<std::string>{"frames", "paths", "context"}))
       ->capture_default_str();
   app.add_option("--repeat", options.repeat, "counted runs of each; default 7, on a software device 3")
       ->check(CLI::Range(1, 10000));
@@ -57,7 +57,6 @@ int readOptions(int argc, char** argv, Options& options) {
       ->capture_default_str();
 
   app.add_option("--json", options.json, "file to write, - for standard output");
-  app.add_option("--plot", options.plot, "folder for plots of time against error");
   app.add_option("--compare", options.compare,
                  "JSON of another run: says what is slower or worse now, and exits with 1 if something is");
   app.add_option("--results", options.results, "JSON to compare in place of a run");
@@ -68,7 +67,8 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--save-cache", options.saveCache)->group("");
   try {
     app.parse(argc, argv);
-    if (!options.results.empty() && options.compare.empty()) throw CLI::RequiresError("--results", "--compare");
+    if (!options.results.empty() && options.compare.empty())
+      throw CLI::RequiresError("--results", "--compare");
   } catch (const CLI::ParseError& e) {
     return app.exit(e);
   }

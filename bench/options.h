@@ -21,7 +21,6 @@ struct FrameOptions {
 
 struct Options {
   std::string device, json;
-  std::filesystem::path plot;
   std::optional<int> repeat;  // absent: 7, or 3 on a software device
   std::set<std::string> tables = {"frames", "context"};
   FrameOptions frames;

@@ -14,11 +14,8 @@ void addCommands(const Command& app) {
   addFlickerCommand(app);
   addCaptureCommand(app);
   addSheetCommand(app);
-  addMeasureDotsCommand(app);
   addStressCommand(app);
   addViewCommand(app);
-  addPerceptionCommand(app);
-  addAnglesCommand(app);
   addShadersCommand(app);
 }
 

@@ -8,7 +8,6 @@ namespace pellucid::harness {
 
 void addCommands(const Command& app);  // all that the program has, in the help's order
 
-void addAnglesCommand(const Command& app);
 void addInfoCommand(const Command& app);
 void addInitCommand(const Command& app);
 void addReplayCommand(const Command& app);
@@ -20,10 +19,8 @@ void addEvaluateCommand(const Command& app);
 void addFlickerCommand(const Command& app);
 void addCaptureCommand(const Command& app);
 void addSheetCommand(const Command& app);
-void addMeasureDotsCommand(const Command& app);
 void addStressCommand(const Command& app);
 void addViewCommand(const Command& app);
-void addPerceptionCommand(const Command& app);
 void addShadersCommand(const Command& app);
 
 }  // namespace pellucid::harness

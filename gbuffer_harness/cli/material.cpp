@@ -2,12 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <sstream>
 
@@ -15,7 +13,6 @@
 #include "capture/material.h"
 #include "cli/commands.h"
 #include "common/error.h"
-#include "common/plot.h"
 #include "pellucid/pellucid_material.h"
 
 namespace pellucid::harness {
@@ -23,12 +20,11 @@ namespace pellucid::harness {
 namespace {
 
 constexpr std::array<const char*, 3> kChannelNames = {"R", "G", "B"};
-constexpr std::array<Color, 3> kChannelColors = {{{200, 40, 40}, {30, 140, 50}, {40, 70, 200}}};
 
 const std::vector<double> kThickness = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20};  // of the table, mm
 
 struct Options {
-  std::string name, spectral, plot;
+  std::string name, spectral;
   std::optional<double> ior;
   bool list = false;
 };
@@ -187,56 +183,6 @@ void print(const Compiled& compiled) {
   }
 }
 
-std::vector<double> logarithmic(double first, double last, int count) {
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) values.push_back(first * std::pow(last / first, i / (count - 1.0)));
-  return values;
-}
-
-void writeMaterialPlot(const std::string& path, const Compiled& compiled) {
-  const PellucidMaterial& material = compiled.material;
-  Plot transmittance, profile;
-  transmittance.title = std::string("Transmittance of a slab: ") + compiled.report.name;
-  transmittance.x = {"thickness, mm", true, {}, {}};
-  transmittance.y = {"T", true, 1e-5, 1.0};
-  profile.title = "Diffusion profile: lines Burley, dots Gaussians";
-  profile.x = {"radius, mm", true, {}, {}};
-  profile.y = {"2 pi r R(r), 1/mm", true, {}, {}};
-
-  double farthest = 0;
-  for (const PellucidChannelReport& report : compiled.report.channels)
-    farthest = std::max(farthest, report.maxThickness);
-  const std::vector<double> thickness = logarithmic(compiled.report.channels[0].minThickness, farthest, 40);
-  const std::vector<double> fine = logarithmic(thickness.front(), farthest, 300);
-  const std::vector<PellucidSlab> exact = compiled.slabs(thickness);
-  for (std::uint32_t c = 0; c < 3; ++c) {
-    Series dots{std::string(kChannelNames[c]) + " exact", kChannelColors[c], thickness, {}, true};
-    for (std::size_t i = 0; i < thickness.size(); ++i) dots.y.push_back(exact[3 * i + c].transmittance);
-    Series line{std::string(kChannelNames[c]) + " fitted", kChannelColors[c], fine, {}, false};
-    for (const double d : fine) line.y.push_back(pellucidEvaluateTransmittance(&material, c, d));
-    transmittance.series.push_back(dots);
-    transmittance.series.push_back(line);
-
-    const double d = static_cast<double>(material.burleyDistance[c]);
-    const double radius999 = static_cast<double>(material.radius[c]);
-    Series burley{
-        kChannelNames[c], kChannelColors[c], logarithmic(radius999 / 1000, radius999, 200), {}, false};
-    for (const double r : burley.x) burley.y.push_back((std::exp(-r / d) + std::exp(-r / (3 * d))) / (4 * d));
-    Series gaussians{"", kChannelColors[c], logarithmic(radius999 / 1000, radius999, 50), {}, true};
-    for (const double r : gaussians.x) {
-      double sum = 0;
-      for (std::uint32_t i = 0; i < material.gaussianCount; ++i) {
-        const double v = static_cast<double>(material.gaussianVariance[c][i]);
-        sum += static_cast<double>(material.gaussianWeight[c][i]) * r / v * std::exp(-r * r / (2 * v));
-      }
-      gaussians.y.push_back(sum);
-    }
-    profile.series.push_back(burley);
-    profile.series.push_back(gaussians);
-  }
-  writePlot(path, {transmittance, profile});
-}
-
 void run(const Options& options) {
   if (options.list) {
     for (std::uint32_t i = 0; i < pellucidPresetCount(); ++i) std::cout << pellucidPresetName(i) << '\n';
@@ -249,7 +195,6 @@ void run(const Options& options) {
     return pellucidCompileMaterial(&compiled.desc, &compiled.material, &compiled.report, note, user);
   });
   print(compiled);
-  if (!options.plot.empty()) writeMaterialPlot(options.plot, compiled);
 }
 
 }  // namespace
@@ -263,7 +208,6 @@ void addMaterialCommand(const Command& app) {
   command.flag("--list", options->list, "print the presets' names");
   command.option("--ior", options->ior, "index of refraction, 1 to 3 (default: the preset's, else 1.4)");
   command.option("--spectral", options->spectral, "CSV of wavelength (nm), sigma_s, sigma_a (1/mm)");
-  command.option("--plot", options->plot, "write a PNG of T(d) and the profile");
   command.run([options] { run(*options); });
 }
 

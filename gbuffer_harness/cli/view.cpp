@@ -34,7 +34,6 @@ void addViewCommand(const Command& app) {
 #include "cli/settings.h"
 #include "scene/model.h"
 #include "view/application.h"
-#include "view/perception.h"
 
 namespace pellucid::harness {
 
@@ -47,16 +46,14 @@ struct Options {
   bool noWindow = false, validate = false;
   int frames = 0;
   std::string script, screenshot, save;
-  std::string perception, participant, answers;
   float exposure = 0;
   std::optional<ToneMap> toneMap;  // absent: none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
 const std::set<std::string> kNotOfTheScene = {
-    "--set",         "--mode",    "--debug",  "--device",     "--window-size", "--no-window",
-    "--validate",    "--frames",  "--script", "--screenshot", "--exposure",    "--perception",
-    "--participant", "--answers", "--save",   "--tonemap",    "--help"};
+    "--set",    "--mode",   "--debug",      "--device",   "--window-size", "--no-window", "--validate",
+    "--frames", "--script", "--screenshot", "--exposure", "--save",        "--tonemap",   "--help"};
 
 bool isCapture(const std::string& path) {
   const std::string extension = extensionOf(path);
@@ -117,19 +114,6 @@ void setWindowSize(const std::string& text, ApplicationOptions& options) {
                        std::to_string(kSmallestWindow) + " .. " + std::to_string(kLargestSide));
 }
 
-PerceptionOptions perceptionTest(const Command& command, const Options& options) {
-  for (const GivenOption& option : command.given())
-    if (option.positional || kNotOfTheScene.count(option.name) == 0)
-      throw UsageError((option.positional ? options.scene.model : option.name) +
-                       ": the scenes are those of --perception");
-  if (options.participant.empty() || options.answers.empty())
-    throw UsageError("--perception: needs --participant and --answers");
-  if (!options.save.empty()) throw UsageError("--save: there is no one scene in a perception test");
-  requireNewParticipant(options.answers, options.participant);
-  return {readSceneList(options.perception), options.participant, options.answers,
-          parsed(options.settings),          options.exposure,    options.toneMap.value_or(ToneMap::None)};
-}
-
 void view(const Command& command, const Options& options) {
   if (options.noWindow && options.frames == 0) throw UsageError("--no-window: needs --frames");
   ApplicationOptions application;
@@ -142,11 +126,7 @@ void view(const Command& command, const Options& options) {
   application.screenshot = options.screenshot;
   application.save = options.save;
   application.settingsText = settingsJson;
-  if (!options.perception.empty()) {
-    application.perception = perceptionTest(command, options);
-  } else {
-    application.scene = sceneOf(command, options);
-  }
+  application.scene = sceneOf(command, options);
   const ApplicationReport report = runApplication(application);
   std::printf("%s\n%d frames of the screen, %llu of the module\n", report.device.c_str(), report.frames,
               static_cast<unsigned long long>(report.recorded));
@@ -157,8 +137,7 @@ void view(const Command& command, const Options& options) {
 
 void addViewCommand(const Command& app) {
   const auto options = std::make_shared<Options>();
-  const Command command =
-      app.subcommand("view", "Look at a model, a scene or a capture, and change it");
+  const Command command = app.subcommand("view", "Look at a model, a scene or a capture, and change it");
   addCaptureOptions(command, options->scene, SceneUse::Replay);
   command.describe("model", "glTF file (.glb, .gltf) or capture (.exr, .json)");
   options->settings.addTo(command);
@@ -174,10 +153,6 @@ void addViewCommand(const Command& app) {
                  "NAME.exr: at the end the capture, with settings, result and picture beside it");
   command.option("--exposure", options->exposure, "factor; default: from the first picture").positive();
   addToneMapOption(command, options->toneMap);
-  command.option("--perception", options->perception,
-                 "perception test: a file that names captures, one a line");
-  command.option("--participant", options->participant, "who takes the test");
-  command.option("--answers", options->answers, "CSV that the test's answers are added to");
   command.flag("--validate", options->validate,
                "with the Vulkan validation layers, whose messages are an error");
   command.run([options, command] { view(command, *options); });

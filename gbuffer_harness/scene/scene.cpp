@@ -34,19 +34,6 @@ void checkSide(const char* field, int value, int smallest) {
   throw InputError("", "scene \"" + parameters.name + "\"", why);
 }
 
-void applyAim(const SceneParameters& parameters, SceneModel& model) {
-  if (!parameters.aim) return;
-  if (model.endless) refuse(parameters, "has no end, so that a camera cannot go round it");
-  if (model.lights.empty()) refuse(parameters, "has painted irradiance and no lights that could turn");
-  const glm::dvec3 eye(glm::inverse(toGlm(model.camera.viewFromWorld))[3]);
-  const glm::dvec3 toCamera = glm::normalize(toGlm(parameters.aim->toCamera));
-  model.camera.viewFromWorld = lookAt(fromGlm(model.center + glm::distance(eye, model.center) * toCamera),
-                                      fromGlm(model.center), {0, 1, 0});
-  Light light;
-  light.direction = fromGlm(-glm::normalize(toGlm(parameters.aim->toLight)));
-  model.lights = {light};
-}
-
 void applyTurn(const SceneParameters& parameters, SceneModel& model) {
   const Vector3 center = fromGlm(model.center);
   if (const auto angle = parameters.turn.camera) {
@@ -89,7 +76,6 @@ SceneModel sceneModel(const SceneParameters& parameters) {
     model.materials.assign(model.materials.size(), material->source);
     model.albedo = [albedo = toGlm(material->albedo)](const glm::dvec3&) { return albedo; };
   }
-  applyAim(parameters, model);
   applyTurn(parameters, model);
   return model;
 }

@@ -12,12 +12,6 @@
 
 namespace pellucid::harness {
 
-// A camera and a light in place of a scene's own: the camera looks at the scene's center from this direction
-// at the distance it has, and one directional light of irradiance 1 comes from that one.
-struct Aim {
-  Vector3 toCamera, toLight;  // world, from the center; any length > 0
-};
-
 // A material for all objects in place of a scene's own, and the scene's albedo with it.
 struct SceneMaterial {
   MaterialSource source;
@@ -32,7 +26,7 @@ struct SceneParameters {
 
   std::optional<bool> orthographic;  // absent: as the scene prefers
   bool reversedZ = false;
-  bool infiniteFar = false;  // perspective only
+  bool infiniteFar = false;                                     // perspective only
   PellucidDepthEncoding depthEncoding = PELLUCID_DEPTH_VIEW_Z;  // DEVICE or VIEW_Z
 
   std::optional<PellucidLightType> lightType;  // absent: as the scene prefers; same E at its center
@@ -42,7 +36,6 @@ struct SceneParameters {
   // About the scene's center. Refused by name: the camera of an endless scene, lights of a painted one.
   Turn turn;
   std::optional<SceneMaterial> material;
-  std::optional<Aim> aim;  // refused likewise; `turn` comes after it
 };
 
 struct SceneOption {
@@ -62,7 +55,7 @@ std::vector<SceneInfo> listScenes();
 // unit is 1 mm. Throws InputError naming the field when a name, size, option or combination is not known.
 Capture makeScene(const SceneParameters& parameters);
 
-// World; what a Turn goes round and an Aim looks at. Throws likewise.
+// World; what a Turn goes round. Throws likewise.
 Vector3 sceneCenter(const SceneParameters& parameters);
 
 }  // namespace pellucid::harness

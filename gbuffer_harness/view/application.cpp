@@ -3,7 +3,6 @@
 #include <imgui.h>
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -19,7 +18,6 @@
 #include "view/gui.h"
 #include "view/input.h"
 #include "view/panel.h"
-#include "view/perception.h"
 #include "view/script.h"
 #include "window/window.h"
 
@@ -96,7 +94,6 @@ public:
     io.KeyShift = held_.contains("shift");
     for (const char* key : {"w", "a", "s", "d", "e", "q"})
       io.KeysDown[std::toupper(*key)] = held_.contains(key);
-    io.KeysDown[int{' '}] = held_.contains("space");
   }
 
 private:
@@ -122,10 +119,7 @@ public:
     gui_ = std::make_unique<Gui>(device_, *screen_, window_ ? window_->handle() : nullptr);
     display_ = std::make_unique<DisplayPass>(device_, *screen_);
     contexts_ = std::make_unique<Contexts>(device_);
-    if (isTest())
-      openQuestion();
-    else
-      open(options.scene);
+    open(options.scene);
   }
 
   ApplicationReport run() {
@@ -157,7 +151,7 @@ public:
 
 private:
   bool done() const {
-    if (testDone_ || (window_ && window_->shouldClose())) return true;
+    if (window_ && window_->shouldClose()) return true;
     return options_.frames > 0 && passed_ >= options_.frames;
   }
 
@@ -189,20 +183,16 @@ private:
     Changes changes;
     script_.play(passed_, state_, changes, [this](const ScriptLine& line) { carryOut(line); });
     gui_->begin();
-    if (isTest()) {
-      changes.add(askForColor());
-    } else {
-      changes.add(controls_.apply(state_, input(), *source_, picture()));
-      changes.add(drawPanel(state_, panel_, *frames_, *source_,
-                            {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
-    }
+    changes.add(controls_.apply(state_, input(), *source_, picture()));
+    changes.add(drawPanel(state_, panel_, *frames_, *source_,
+                          {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
     followWindow(changes);
     turn(changes);
     changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture();
     const ImVec2 cursor = ImGui::GetIO().MousePos;
-    if (!isTest()) drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
+    drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
     gui_->end();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
@@ -279,11 +269,8 @@ private:
     return result;
   }
 
-  bool isTest() const { return !options_.perception.scenes.empty(); }
   void carryOut(const ScriptLine& line);
   void open(const SceneToView& scene);
-  void openQuestion();
-  Changes askForColor();
   void writePending();
   void save(const std::filesystem::path& capture);
   void screenshot(const std::filesystem::path& file);
@@ -304,9 +291,6 @@ private:
   std::unique_ptr<ViewFrames> frames_;
   ScriptedInput script_;
   std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
-  std::size_t scene_ = 0;               // of the perception test
-  std::chrono::steady_clock::time_point sceneBegin_;
-  bool spaceDown_ = false, testDone_ = false;
   int passed_ = 0;  // frames, with those that had no screen
   ApplicationReport report_;
 };
@@ -338,44 +322,6 @@ void Application::open(const SceneToView& scene) {
   state_ = std::move(state);
   panel_.colors = falseColorsOf(state_.display, *frames_);
   panel_.cost = {};
-}
-
-// The perception test's scene, with a filter that changes nothing.
-void Application::openQuestion() {
-  const PerceptionOptions& test = options_.perception;
-  open({[&](Device&) { return captureSource(readCapture(test.scenes[scene_])); },
-        [&](ViewState& state) {
-          state.settings = test.settings;
-          state.settings.translucency.transmittanceFilter = {1, 1, 1};
-          state.display.exposure = test.exposure;
-          state.display.toneMap = test.toneMap;
-        }});
-  sceneBegin_ = std::chrono::steady_clock::now();
-}
-
-// The perception test's panel; space accepts the color and goes on.
-Changes Application::askForColor() {
-  const PerceptionOptions& test = options_.perception;
-  std::array<float, 3>& color = state_.settings.translucency.transmittanceFilter;
-  Changes changes;
-  changes.frame = drawColorQuestion(color, scene_ + 1, test.scenes.size(), static_cast<float>(width_),
-                                    static_cast<float>(height_));
-  const bool down = isDown(' '), pressed = down && !spaceDown_;
-  spaceDown_ = down;
-  if (!pressed) return changes;
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - sceneBegin_;
-  addAnswer(test.answers, {test.participant,
-                           test.scenes[scene_].stem().string(),
-                           {color[0], color[1], color[2]},
-                           seconds.count()});
-  if (++scene_ == test.scenes.size()) {
-    testDone_ = true;
-    --scene_;
-    return changes;
-  }
-  openQuestion();
-  changes.shown = true;
-  return changes;
 }
 
 void Application::writePending() {

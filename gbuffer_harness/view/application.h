@@ -13,16 +13,6 @@
 
 namespace pellucid::harness {
 
-// Whelan 2009, 3.4.1: each scene until a color is accepted, then the next, then the end.
-struct PerceptionOptions {
-  std::vector<std::filesystem::path> scenes;  // captures; empty: no test
-  std::string participant;
-  std::filesystem::path answers;  // CSV that rows are added to
-  ReplaySettings settings;        // but for the filter
-  float exposure = 0;             // of all scenes; 0: each by its own picture
-  ToneMap toneMap = ToneMap::None;
-};
-
 struct SceneToView {
   std::function<std::unique_ptr<Source>(Device&)> open;
   std::function<void(ViewState&)> start;  // changes the state that the source begins with
@@ -37,13 +27,12 @@ struct ApplicationOptions {
   std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
   SceneToView scene;
-  PerceptionOptions perception;  // with scenes, `scene` is not looked at
 };
 
 struct ApplicationReport {
-  std::string device;          // its description
-  int frames = 0;              // of the screen that were drawn
-  std::uint64_t recorded = 0;  // of the module
+  std::string device;              // its description
+  int frames = 0;                  // of the screen that were drawn
+  std::uint64_t recorded = 0;      // of the module
   std::vector<std::string> saved;  // files
 };
 

@@ -197,7 +197,6 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawDisplay(state, panel, frames));
   changes.frame |= drawSettings(state.settings);
   changes.add(drawMaterials(state));
-  if (ImGui::CollapsingHeader("T(d) and profile", ImGuiTreeNodeFlags_DefaultOpen)) drawCurves(state, frames);
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
   changes.add(drawCost(state, panel, frames));
@@ -209,22 +208,6 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   ImGui::PopItemWidth();
   ImGui::End();
   return changes;
-}
-
-bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
-                       float height) {
-  ImGui::SetNextWindowPos({width - kPanelWidth, 0});
-  ImGui::SetNextWindowSize({kPanelWidth, height});
-  ImGui::Begin("Question", nullptr,
-               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar);
-  ImGui::Text("Scene %zu of %zu", number, count);
-  ImGui::TextWrapped(
-      "Choose the color of the light that comes through until the picture looks real, then press "
-      "the space bar.");
-  const bool changed = ImGui::ColorPicker3("##color", color.data(),
-                                           ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_Float);
-  ImGui::End();
-  return changed;
 }
 
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,

@@ -24,7 +24,7 @@ struct PanelState {
   std::string message;              // of what went wrong or was done last
   bool isError = false;
   char savePath[512] = "out/view.exr";
-  bool save = false;  // asked for in this frame
+  bool save = false;   // asked for in this frame
   FalseColors colors;  // as they are drawn
 };
 
@@ -40,17 +40,12 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
 void drawOverlay(const ViewState& state, const PanelState& panel, const ViewFrames& frames,
                  const ScreenRect& picture, float cursorX, float cursorY);
 
-// In the panel's place: a color selector for scene `number` of `count`. True: another color.
-bool drawColorQuestion(std::array<float, 3>& color, std::size_t number, std::size_t count, float width,
-                       float height);
-
 // One to four numbers under one label, kept within [low, high]. True: changed.
 bool dragReals(const char* label, double* values, int count, double low, double high);
 
 // Parts of the panel.
 Changes drawMaterials(ViewState& state);
 Changes drawLights(ViewState& state, const Source& source);
-void drawCurves(const ViewState& state, const ViewFrames& frames);
 Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames);
 
 }  // namespace pellucid::harness

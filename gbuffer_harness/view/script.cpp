@@ -20,8 +20,7 @@ const std::map<std::string, std::size_t> kArguments = {
     {"resize", 2}, {"set", 1},        {"show", 1},  {"split", 2},   {"exposure", 1},
     {"save", 1},   {"screenshot", 1}, {"turn", 2}};
 
-const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w",    "a",
-                                           "s",    "d",      "e",     "q",     "space"};
+const std::vector<std::string> kButtons = {"left", "middle", "right", "shift", "w", "a", "s", "d", "e", "q"};
 
 [[noreturn]] void fail(const ScriptLine& line, const std::string& sentence) {
   throw InputError(line.where, line.command, sentence);

@@ -11,7 +11,7 @@ namespace pellucid::harness {
 
 // One line "FRAME COMMAND ARGUMENTS", before that frame of the screen, counted from 1:
 //   move X Y                          cursor, pixels of the window
-//   press | release left | middle | right | shift | w | a | s | d | e | q | space
+//   press | release left | middle | right | shift | w | a | s | d | e | q
 //   wheel NOTCHES
 //   resize WIDTH HEIGHT               of the window
 //   set NAME=VALUE[,VALUE...]         a parameter by its key or label; names or numbers of choices

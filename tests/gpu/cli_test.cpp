@@ -75,6 +75,30 @@ TEST_F(Cli, Sheets) {
   expect(3, sweep + " --sweep material=jade" + out, "jade");
 }
 
+// The settings of a file are those of the command line.
+TEST_F(Cli, SettingsOfAFile) {
+  const std::string capture = path("ear.exr"), replay = "replay " + capture + " --repeat 0 -o ";
+  expect(0, "capture --procedural ear --size 24x24 --shadow-size 32 -o " + capture);
+  std::ofstream(path("s.json"))
+      << R"({"angle": "minimum-dot-azimuth", "face": [0, 0, 1], "center": [1, 2, 3], "minimum-dots": [-0.1, -0.6, -0.3]})";
+  expect(0, replay + path("file.exr") + " --set @" + path("s.json"), "wrote");
+  expect(0,
+         replay + path("list.exr") +
+             " --set angle=minimum-dot-azimuth --set center=1,2,3 --set minimum-dots=-.1,-.6,-.3",
+         "wrote");
+  expect(0, replay + path("plain.exr"), "wrote");
+  expect(0, "compare " + path("file.exr") + " " + path("list.exr") + " --limit max=0", "");
+  expect(1, "compare " + path("file.exr") + " " + path("plain.exr") + " --limit max=0", "limit");
+  expect(3, "replay x.exr --set @" + path("none.json"), "none.json: cannot be read");
+  for (const auto& [text, sentence] : {std::pair("[1]", "s.json: is not an object of settings"),
+                                       {"{\"angle\": ", "s.json: not valid JSON"},
+                                       {"{\"colour\": 1}", "s.json: colour: is not a key of --set"},
+                                       {"{\"face\": [0, \"x\", 0]}", "s.json: face[1]"}}) {
+    std::ofstream(path("s.json")) << text;
+    expect(3, "replay x.exr --set @" + path("s.json"), sentence);
+  }
+}
+
 TEST_F(Cli, UsageErrors) {
   expect(2, "", "subcommand");
   expect(2, "replay", "capture");

@@ -77,31 +77,6 @@ TEST_F(View, RefusesInASentence) {
   EXPECT_NE(outcome.text.find("no window can be opened"), std::string::npos) << outcome.text;
 }
 
-TEST_F(View, PerceptionTestAsksAboutEachSceneAndIsAnalyzed) {
-  for (const char* light : {"directional", "spot"})
-    expect(0,
-           "capture --procedural sphere --size 32x32 --shadow-size 32 --light " + std::string(light) +
-               " -o " + path(std::string(light) + ".exr"),
-           "");
-  std::ofstream(path("scenes.txt")) << "# two\ndirectional.exr\nspot.exr\n";
-  const std::string test = "view --validate --no-window --window-size 320x200 --perception " +
-                           path("scenes.txt") + " --answers " + path("answers.csv") +
-                           " --frames 10 --participant ";
-  const std::string accept = "2 press space\n4 release space\n", again = "6 press space\n7 release space\n";
-  expect(0, test + "one " + script("1 set filter=.5,.3,.2\n" + accept + again), "frames of the screen");
-  expect(3, "perception " + path("answers.csv"), "there are 1 and 2");
-  expect(0, test + "two " + script("1 set filter=.6,.35,.1\n" + accept + "5 set filter=.7,.2,.15\n" + again),
-         "frames of the screen");
-  expect(3, test + "one " + script(accept), "\"one\" has answered already");
-  const std::string answers = bytes("answers.csv");
-  EXPECT_NE(answers.find("one,directional,0.5,0.3,0.2,"), std::string::npos) << answers;
-  EXPECT_NE(answers.find("one,spot,1,1,1,"), std::string::npos) << answers;
-  EXPECT_NE(answers.find("two,spot,0.7,0.2,0.15,"), std::string::npos) << answers;
-  expect(0, "perception " + path("answers.csv"), "2 participants");
-  std::ofstream(path("answers.csv"), std::ios::app) << "three,spot,1,1,1,2\n";
-  expect(3, "perception " + path("answers.csv"), "\"three\" has not answered scene \"directional\"");
-}
-
 // A session with a window: opened, orbited, resized, looked through, turned, closed. The drag and two frames
 // of the turntable record the module again.
 TEST_F(View, WindowOfAVirtualDisplay) {

@@ -22,6 +22,95 @@ def stand_in(**attributes):
     return types.SimpleNamespace(**attributes)
 
 
+# Bliss 1952, The Statistics of Bioassay: lengths of guinea pigs' teeth by supplement (orange juice, ascorbic acid) and dose; R has
+# them as ToothGrowth.
+TEETH = [[[15.2, 21.5, 17.6, 9.7, 14.5, 10.0, 8.2, 9.4, 16.5, 9.7], [19.7, 23.3, 23.6, 26.4, 20.0, 25.2, 25.8, 21.2, 14.5, 27.3],
+          [25.5, 26.4, 22.4, 24.5, 24.8, 30.9, 26.4, 27.3, 29.4, 23.0]],
+         [[4.2, 11.5, 7.3, 5.8, 6.4, 10.0, 11.2, 11.2, 5.2, 7.0], [16.5, 16.5, 15.2, 17.3, 22.5, 17.3, 13.6, 14.5, 18.8, 15.5],
+          [23.6, 18.5, 33.9, 25.5, 26.4, 32.5, 26.7, 21.5, 23.3, 29.5]]]
+
+
+class Thesis(unittest.TestCase):
+    def setUp(self):
+        try:
+            import numpy
+            import scipy  # noqa: F401
+        except ImportError as error:
+            self.skipTest(f"{error}; ./run thesis installs it")
+        self.script, self.numpy = importlib.import_module("thesis"), numpy
+
+    def test_anova_is_r_s(self):
+        # summary(aov(len ~ supp * factor(dose), ToothGrowth)), as R's documentation and textbooks print it.
+        teeth = self.numpy.array(TEETH)
+        table = self.script.two_way_anova(teeth)
+        for source, squares, f in (("first", 205.35, 15.572), ("second", 2426.4, 92.0), ("interaction", 108.3, 4.107)):
+            self.assertAlmostEqual(table[source][0], squares, delta=.05)
+            self.assertAlmostEqual(table[source][2], f, delta=.0005)
+        self.assertAlmostEqual(table["first"][3], .000231, delta=5e-7)
+        self.assertAlmostEqual(table["interaction"][3], .02186, delta=5e-6)
+        self.assertAlmostEqual(table["residual"][0], 712.1, delta=.05)
+        self.assertEqual(table["residual"][1], 54)
+        # (13.23 - 7.98) / sqrt(2 * 712.106 / 54 / 10); then (22.70 - 16.77) and (26.06 - 26.14).
+        comparisons = list(self.script.compare_levels(teeth, table))
+        for (_, t, _), expected in zip(comparisons, (3.2327, 3.6514, .0493)):
+            self.assertAlmostEqual(t, expected, delta=1e-3)
+        self.assertEqual(comparisons[2][2], 1)
+
+    def test_stars_are_the_thesis_s(self):
+        # Table 5.4: t of six comparisons, and its stars. Twelve participants leave 132 degrees.
+        from scipy import stats
+
+        for t, stars in ((2.926, "*"), (2.440, "ns"), (4.606, "***"), (2.870, "*"), (3.299, "**"), (2.562, "ns")):
+            self.assertEqual(self.script.significance(6 * 2 * stats.t.sf(t, 132)), stars)
+
+    def test_answers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "answers.csv")
+
+            def read(*rows):
+                with open(path, "w", encoding="utf-8") as file:
+                    file.write("\n".join(("participant,scene,red,green,blue,seconds", *rows)) + "\n")
+                return self.script.read_answers(path)
+
+            rows = ["p,ear,1,.5,.25,2", "p,nose,1,0,.5,3", "q,ear,1,1,1,2", "q,nose,.5,.5,.5,1"]
+            scenes, participants, colors = read(*rows)
+            self.assertEqual((scenes, participants), (["ear", "nose"], ["p", "q"]))
+            self.assertEqual(colors[:, 0, 0].tolist(), [1, .5, .25])
+            for row in ("p,ear,1,1,1", "p,ear,1,x,1,2", "p,ear,1,1,1.5,2", "p,ear,-1,1,1,2", "p,ear,1,1,1,2,3", "q,nose,1,1,1,2"):
+                with self.assertRaisesRegex(self.script.Refused, r"csv:6"):
+                    read(*rows, row)
+            with self.assertRaisesRegex(self.script.Refused, '"q" has not answered scene "nose"'):
+                read(*rows[:3])
+
+    def test_shares_of_a_turntable(self):
+        # By .0026 a frame: .005 and .01 are exceeded by every second and fourth frame.
+        cosines = -.5 + .0026 * self.numpy.arange(400)
+        necessary = self.numpy.arange(400) < 200
+        shares = [self.script.coherent_share(cosines, t, n) for n in (None, necessary) for t in (.005, .01)]
+        self.assertEqual(shares, [.5, .25, .25, .125])
+        self.assertEqual(self.script.coherent_share([-.5, -.5, .5, -.5], .005, [True, True, False, True]), .5)
+
+    def test_minimum_dots(self):
+        # Light that grows from a dot of m on passes the threshold t of its maximum at m - t (1 + m).
+        swings, expected = [], []
+        for light, eyes in self.script.swing_directions(12, 900):
+            m = -.4 - .3 * light[0]
+            for dot, ways in eyes:
+                for eye in ways:
+                    self.assertAlmostEqual(float(light @ eye), dot, delta=1e-12)
+            swings.append([(dot, max(0, (m - dot) / (1 + m))) for dot, _ in eyes])
+            expected.append(m - .2 * (1 + m))
+        for dot, right in zip(self.script.minimum_dots(swings, .2), expected):
+            self.assertAlmostEqual(dot, right, delta=.5001e-4)
+        self.assertEqual(self.script.minimum_dots([[(0, 1), (-1, 1)], [(0, 0), (-1, 0)]], .25), [0, -1])
+
+    def test_polynomials_are_those_of_the_settings(self):
+        with open(os.path.join(TOOLS, "../gbuffer_harness/replay/settings.cpp"), encoding="utf-8") as file:
+            settings = file.read()
+        for polynomial in (self.script.QUADRATIC, self.script.CUBIC):
+            self.assertIn("{" + ", ".join(map(str, polynomial)), settings)
+
+
 class RenderDoc(unittest.TestCase):
     def setUp(self):
         self.script = importlib.import_module("renderdoc_capture")
