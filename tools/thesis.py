@@ -7,7 +7,7 @@
     python3 thesis.py PELLUCID FOLDER views R,G,B [MODEL.glb OPTION...]   views.png: six views by a color filter
     python3 thesis.py PELLUCID FOLDER perception ANSWERS.csv              table 5.4
 
-OPTION is of `pellucid capture`; where no model is given, the procedural ear is drawn. Needs numpy, scipy and matplotlib.
+OPTION is of `pellucid capture`. Without a model, the procedural ear is drawn. Needs numpy, scipy and matplotlib.
 """
 import csv
 import itertools
@@ -21,6 +21,12 @@ import sys
 import numpy
 
 EAR = ["--procedural", "ear"]
+
+
+def scene_of(options):
+    """Options of `pellucid capture`, of the procedural ear where they name no model and no scene."""
+    named = options and not options[0].startswith("-") or "--procedural" in options
+    return options if named else EAR + options
 
 
 class Refused(Exception):
@@ -186,6 +192,8 @@ def times(pellucid, source):
 
     diffused = mean(picked, "--set", "features=diffusion")
     through = mean([k for k in picked if necessary[k]], "--mode", "thesis", "--set", "features=translucency")
+    if through == 0:
+        raise Refused("times: no light comes through the model; --material '*=skin1' makes it of skin")
     whole = mean(picked)
     share = numpy.mean(necessary)
     coherent = {t: coherent_share(cosines, t) for t in (.005, .01)}
@@ -402,9 +410,9 @@ def main(command, folder, *rest):
     elif task == "views":
         if not rest:
             raise Refused("views: which color filter, as R,G,B?")
-        views(pellucid, rest[0], rest[1:] or EAR)
+        views(pellucid, rest[0], scene_of(rest[1:]))
     else:
-        figures(pellucid, rest or EAR)
+        figures(pellucid, scene_of(rest))
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_BACK_DEPTH) uniform texture2D backDepthImage;
 
+// As translucency/transmission.glsl says. `pixel`, here and below: of the image, not of the lattice.
 float distanceOf(ivec2 pixel, uint material, bool back) {
   ivec2 at = inImage(withinRect(inLattice(pixel)));
   uint there = materialAt(at); // no load waits for another
@@ -18,10 +19,8 @@ float distanceOf(ivec2 pixel, uint material, bool back) {
 }
 #endif
 
-// The latencies of loads at once overlap, which takes registers that the pass over all pixels does not have.
-#ifdef PELLUCID_TRANSMISSION_GLSL
-#define FACET_LOOP [[dont_unroll]]
-#else
+// Unrolled, the loads of the four neighbors overlap. transmission.glsl has no registers for that, and defines another loop.
+#ifndef FACET_LOOP
 #define FACET_LOOP [[unroll]]
 #endif
 
@@ -31,7 +30,8 @@ ivec2 pixelBeside(ivec2 pixel, int i) {
   return pixel + (i < 2 ? ivec2(side, 0) : ivec2(0, side));
 }
 
-// Unit normal of the front or back depths, towards the eye; 0: not known. `own`: the pixel's planar distance, above 0.
+// Unit normal of the front or back depths, towards the eye; 0: not known. `own`: the pixel's planar distance in
+// these depths, above 0.
 vec3 facetAt(ivec2 pixel, uint material, float own, bool back) {
   vec4 beside;
   FACET_LOOP for (int i = 0; i < 4; ++i) beside[i] = distanceOf(pixelBeside(pixel, i), material, back);

@@ -35,6 +35,7 @@ bool mayUse(uint use) { return (kUses & use) != 0u; }
 vec3 hiddenIrradianceOf(ivec2 pixel) { return sanitize(texelFetch(hiddenIrradianceImage, pixel, 0).rgb); }
 #endif
 
+#define FACET_LOOP [[dont_unroll]]
 #include "frame/facet.glsl"
 
 // material: index + 1, as materialIndex has it and not 0. Frames without thin walls read nothing.

@@ -42,13 +42,26 @@ std::string otherPrimaries(const Imf::Chromaticities& found) {
   return "";
 }
 
-// Names that OpenImageIO, OpenColorIO and Blender have for linear colors of Rec. 709.
-bool isLinearRec709(std::string name) {
+// Names that OpenImageIO, OpenColorIO and Blender have for linear colors of Rec. 709, and for data.
+bool keepsRec709(std::string name) {
   std::erase_if(name, [](unsigned char c) { return !std::isalnum(c); });
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  const char* const known[] = {"",        "data",         "linear",           "scenelinear",
-                               "raw",     "unknown",      "linrec709",        "linrec709scene",
-                               "linsrgb", "linearrec709", "linearrec709srgb", "linearsrgb"};
+  const char* const known[] = {"",
+                               "data",
+                               "linear",
+                               "scenelinear",
+                               "raw",
+                               "unknown",
+                               "linrec709",
+                               "linrec709scene",
+                               "linsrgb",
+                               "linearrec709",
+                               "linearrec709srgb",
+                               "linearsrgb",
+                               "linearbt709",
+                               "utilitylinearsrgb",
+                               "utilityraw",
+                               "noncolor"};
   return std::find(std::begin(known), std::end(known), name) != std::end(known);
 }
 
@@ -119,7 +132,7 @@ std::vector<std::string> unusedAttributes(const Imf::Header& header) {
       sentences.push_back(std::move(sentence));
   for (const char* name : {"colorInteropID", "oiio:ColorSpace"})
     if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>(name);
-        space && !isLinearRec709(space->value()))
+        space && !keepsRec709(space->value()))
       sentences.push_back(std::string(name) + ": its colors are \"" + space->value() + "\"" + kAdvice);
   return sentences;
 }

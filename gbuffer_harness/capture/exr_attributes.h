@@ -1,4 +1,4 @@
-// What the attributes of OpenEXR's headers mean for a capture: the one list of those that this program knows.
+// What the attributes of OpenEXR's headers mean for a capture.
 #pragma once
 
 #include <ImfHeader.h>
@@ -19,7 +19,7 @@ struct ExrAttribute {
   const char* name;
   AttributeUse use;
 };
-// An attribute outside the list belongs to the program that wrote it, and has no effect.
+// What readers do with each; tests compare. Attributes outside the list have no effect.
 const std::vector<ExrAttribute>& exrAttributes();
 
 // A sentence for each Named attribute whose value says that colors are not linear Rec. 709's.

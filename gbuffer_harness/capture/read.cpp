@@ -54,7 +54,8 @@ public:
   void load(int& screenWidth, int& screenHeight, std::vector<std::string>& warnings) {
     std::map<std::tuple<std::filesystem::path, int, ExrWindow>, std::vector<ExrPlane>> parts;
     const Request* first = nullptr;
-    std::map<std::string, const Request*> views;  // of stereo files
+    const Request* ofView = nullptr;  // the first of a stereo file
+    std::string firstView;
     std::set<std::string> said;
     for (const Request& request : requests_) {
       const BufferSource& source = *request.source;
@@ -62,12 +63,14 @@ public:
       const ExrFile& file = open(source.file, source.field + ".file");
       const int part = file.findPart(source.channels, source.part, source.field);
       const std::string view = request.screen ? file.viewOf(part, source.channels.front()) : "";
-      if (!view.empty()) views.emplace(view, &request);
-      if (views.size() > 1)
+      if (!view.empty() && ofView && view != firstView)
         throw InputError(source.file.string(), source.field,
-                         "of the view \"" + views.rbegin()->first + "\", but " +
-                             views.begin()->second->source->field + " is of \"" + views.begin()->first +
-                             "\"; a capture has one eye");
+                         "of the view \"" + view + "\", but " + ofView->source->field + " is of \"" +
+                             firstView + "\"; a capture has one eye");
+      if (!view.empty() && !ofView) {
+        ofView = &request;
+        firstView = view;
+      }
       if (request.image->channels == 3)
         for (const std::string& sentence : file.unusedAttributes(part))
           if (said.insert(source.file.string() + sentence).second)

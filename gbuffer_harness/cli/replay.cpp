@@ -215,13 +215,18 @@ bool isFinished(const Options& options, const std::filesystem::path& output) {
 }
 
 // Threads read, compile and write; one at a time has the device. With settings.reuse frames follow in their
-// order, each with the history of the one before: frames finished before are replayed once more, as later
-// frames need their history.
+// order, each with the history of the one before.
 void replaySequence(const Options& options, const ReplaySettings& settings) {
   const FramePattern input("capture", options.input), output("-o", options.output);
   const std::vector<int> frames = options.frames.empty() ? input.existing() : parseFrames(options.frames);
   if (frames.empty()) throw InputError(options.input, "", "no file has such a name");
   const bool keepsHistory = settings.reuse != PELLUCID_REUSE_NONE;
+  if (keepsHistory && !options.overwrite)
+    for (const int frame : frames)
+      if (std::filesystem::exists(output(frame)))
+        throw InputError(output(frame).string(), "",
+                         "is there, but frames with reuse need the history of those before: --overwrite "
+                         "makes all of them again");
   Device device({options.device, false});
   Replayer replayer(device);
   ReplaySequence sequence(device);
@@ -231,55 +236,55 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
   std::set<std::string> warnings;  // frames have most in common
   std::vector<int> missing;
   int skipped = 0;
-  // Whether the frame was replayed.
+  const auto counted = [&](const auto& change) {
+    const std::scoped_lock lock(reportMutex);
+    change();
+  };
   const auto replayFrame = [&](int frame) {
-    const bool finished = isFinished(options, output(frame));
-    const bool isThere = std::filesystem::exists(input(frame));
-    {
-      const std::scoped_lock lock(reportMutex);
-      if (finished) ++skipped;
-      if (!finished && !isThere) missing.push_back(frame);
-    }
-    if (!isThere || (finished && !keepsHistory)) return false;
+    if (isFinished(options, output(frame))) return counted([&] { ++skipped; });
+    if (!std::filesystem::exists(input(frame))) return counted([&] { missing.push_back(frame); });
     const Capture capture = readCapture(input(frame));
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     requireNearestDistance(capture, materials, settings);
-    {
-      const std::scoped_lock lock(reportMutex);
+    counted([&] {
       warnings.insert(capture.warnings.begin(), capture.warnings.end());
-    }
+      if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())
+        warnings.insert("captures without the buffer \"motion\": all that they show counts as still");
+    });
     std::unique_lock lock(deviceMutex);
     const Replayed replayed = runFrame(options, [&](const auto& look) {
       return keepsHistory ? sequence.run(capture, materials, settings, look)
                           : replayer.run(capture, materials, settings, 0, look);
     });
     lock.unlock();
-    if (!finished)
-      writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
-                 wantsPng(options, settings), options.exposure);
-    return true;
+    writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
+               wantsPng(options, settings), options.exposure);
   };
-  std::optional<int> last;  // of the history
-  parallelRows(static_cast<int>(frames.size()), keepsHistory ? 1 : options.jobs, [&](int i) {
-    const int frame = frames[static_cast<std::size_t>(i)];
-    const auto fails = [&](const std::string& sentence) {
-      const std::scoped_lock lock(reportMutex);
-      failures[frame] = sentence;
-    };
-    // Motion vectors lead to the frame before, whose history there must be.
-    if (keepsHistory && last != frame - 1) sequence.cut();
+  const auto tryFrame = [&](int frame) {
     try {
-      if (replayFrame(frame) && keepsHistory) last = frame;
+      replayFrame(frame);
     } catch (const DeviceError&) {
       throw;  // the next frame would find the same device
     } catch (const std::bad_alloc&) {
-      fails("needs more memory than there is");
+      counted([&] { failures[frame] = "needs more memory than there is"; });
     } catch (const std::exception& error) {
-      fails(error.what());
+      counted([&] { failures[frame] = error.what(); });
     }
     progress.advance();
-  });
-  warn({warnings.begin(), warnings.end()});
+  };
+  if (keepsHistory) {
+    std::size_t lost = 0;  // frames that are missing or failed
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      tryFrame(frames[i]);
+      // Motion vectors lead to the frame before, whose history there must be.
+      const bool isLost = missing.size() + failures.size() > lost;
+      lost = missing.size() + failures.size();
+      if (isLost || (i + 1 < frames.size() && frames[i + 1] != frames[i] + 1)) sequence.cut();
+    }
+  } else {
+    parallelRows(static_cast<int>(frames.size()), options.jobs,
+                 [&](int i) { tryFrame(frames[static_cast<std::size_t>(i)]); });
+  }
   const std::size_t failedCount = failures.size() + missing.size();
   std::printf("%s\n%zu frames: %zu written, %d finished before, %zu failed\n", device.description().c_str(),
               frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failedCount, skipped,
@@ -333,7 +338,7 @@ void addReplayCommand(const Command& app) {
                  "EXR to write; default: <capture>.pellucid.exr here; of a sequence out.####.exr");
   command.option("--frames", options->frames,
                  "of a sequence: FIRST-LAST or a list like 1-10,20 (default: all that exist); frames "
-                 "finished before are skipped");
+                 "finished before are skipped, without reuse");
   command.option("--jobs", options->jobs, "threads of a sequence that read and write files").range(1, 1024);
   command.flag("--overwrite", options->overwrite, "of a sequence: make finished frames again");
   command

@@ -307,7 +307,7 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
   return blocks;
 }
 
-double Gather::quadSide(const Surface& surface) const {
+double Gather::facetReach(const Surface& surface) const {
   const Camera& camera = surfaces_.camera();
   const double planar = camera.planarDepth(surface.position);
   const glm::dvec2 pixel = camera.project(surface.position);
@@ -482,9 +482,10 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (y.material != 0 && y.material != exit.material + 1) continue;
       const glm::dvec3 to = exit.position - y.position;
       GatherPath path = gatherPath(to, exit.normal, y.normal);
-      // What turns little within the reach of a facet, two pixels, is one surface, through which no light comes.
+      // What turns little within the reach of a facet, two pixels, is one surface, through which no light
+      // comes.
       const double turned = 1 - path.facing,
-                   across = turned * std::lerp(std::min(path.distance / exit.quad, 1.0), 1.0,
+                   across = turned * std::lerp(std::min(path.distance / exit.reach, 1.0), 1.0,
                                                std::min(2 * turned, 1.0));
       const double side = std::sqrt(y.area);
       // Half a texel: nearer than that the sum is no integral.
@@ -514,7 +515,7 @@ Gathered Gather::at(const Surface& surface, std::size_t material) const {
   const GatherKernel& kernel = *kernels_[material];
   const glm::dmat4& worldFromView = surfaces_.worldFromView();
   const Exit exit{mm_ * glm::dvec3(worldFromView * glm::dvec4(surface.position, 1)),
-                  glm::dmat3(worldFromView) * surface.normal, material, quadSide(surface)};
+                  glm::dmat3(worldFromView) * surface.normal, material, facetReach(surface)};
   const BodyFactors body = bodyAt(surface, material);
   const glm::dvec3 rho = kernel.reflectance();
   Gathered result;

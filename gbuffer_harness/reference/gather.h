@@ -54,9 +54,9 @@ private:
   // A point that leaves light, world.
   struct Exit {
     glm::dvec3 position;  // mm
-    glm::dvec3 normal;
+    glm::dvec3 normal;    // of the quad, smoother than the facet's, which the module's probes have
     std::size_t material = 0;
-    double quad = 0;  // side of two pixels there, facing the camera, mm
+    double reach = 0;  // facetReach() there
   };
   // An exit among a light's rays, as its maps say.
   struct Place {
@@ -78,10 +78,10 @@ private:
   // 1 where the straight path from the exit to a texel lies in the body, at that part of the path; 0 where a
   // map's exit lies before, with air or an opaque body behind it. `to`: from the texel to the exit.
   double pathInside(const glm::dvec3& to, const Exit& exit, const Place& place, double part) const;
+  // Two pixels at the surface, facing the camera, mm: what a facet reaches over.
+  double facetReach(const Surface& surface) const;
   // Around a surface, 1/mm, positive where convex: from the quads that lie `reach` mm to both sides in the
   // image. 0 where it does not go on.
-  // Side of two pixels at the surface, facing the camera, mm.
-  double quadSide(const Surface& surface) const;
   double meanCurvature(const Surface& surface, double reach) const;
   // Thickness of the body, mm: a slab's at any angle, a ball's diameter. INFINITY: not known.
   double thickness(const Surface& surface) const;

@@ -14,7 +14,8 @@ namespace pellucid::harness {
 //   press | release left | middle | right | shift | w | a | s | d | e | q
 //   wheel NOTCHES
 //   resize WIDTH HEIGHT               of the window
-//   set NAME=VALUE[,VALUE...]         a parameter by its key or label; names or numbers of choices
+//   set KEY=VALUE                     of --set
+//   material PRESET                   of the selected material
 //   show NAME                         of shownNames(), with - for spaces
 //   split NAME AT                     NAME to the left of AT, 0..1 of the picture's width
 //   exposure FACTOR
