@@ -35,7 +35,8 @@ constexpr Option kOptions[] = {
     {"cells of 4 pixels", [](ReplaySettings& s, Capture&) { s.translucency.gatherSpacing = 4; }},
     {"64 samples", [](ReplaySettings& s, Capture&) { s.translucency.gatherSamples = 64; }},
     {"camera thickness", [](ReplaySettings& s, Capture&) { s.translucency.cameraThickness = 1; }},
-    {"translucency alone", [](ReplaySettings& s, Capture&) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; }},
+    {"translucency alone", [](ReplaySettings& s, Capture&) { s.features = PELLUCID_FEATURE_TRANSLUCENCY; },
+     8e-3},  // no irradiance beside it
     {"diffusion alone", [](ReplaySettings& s, Capture&) { s.features = PELLUCID_FEATURE_DIFFUSION; }},
     {"in place", [](ReplaySettings& s, Capture&) { s.aliasOutput = true; }},
     {"a rect",
@@ -116,8 +117,10 @@ TEST(Drivers, AgreeOnEveryOptionAndRepeatEachBit) {
         const Image output = second.replayer.run(c, materials, settings).output;
         EXPECT_TRUE(sameBits(output, second.replayer.run(c, materials, settings).output)) << "repeated";
         const double apart = difference(c, output, expected);
-        EXPECT_LT(apart, option.tolerance);
-        worst = std::max(worst, apart / option.tolerance);
+        // A sample that rounding moves over a texel's border brings other light.
+        const double tolerance = (samples > 0 ? 2 : 1) * option.tolerance;
+        EXPECT_LT(apart, tolerance);
+        worst = std::max(worst, apart / tolerance);
       }
   }
   std::printf("worst difference: %.2g of its tolerance\n", worst);
