@@ -12,7 +12,7 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
-from matplotlib import pyplot
+from matplotlib import pyplot, ticker
 
 
 def decades(values):
@@ -43,6 +43,7 @@ def main(results, folder, *sizes):
                       ylabel="microseconds")
             errors, times = zip(*[point for values in families.values() for point in values])
             panel.set(xlim=decades(errors), ylim=decades(times))
+            panel.xaxis.set_minor_formatter(ticker.NullFormatter())  # labels of a single decade would overlap
             panel.grid(True, which="both", color="0.92")
             panel.legend(fontsize="small")
         figure.tight_layout()

@@ -140,8 +140,8 @@ int levelOf(GatherRings rings, LightConstants light, uint map, vec3 position) {
   return map == rings.map ? rings.level : levelOf(light, map, position);
 }
 
-// The given entry point, or, if it is opaque, the nearest one around that is not: single texels of hair hide the surface around them. An
-// opaque one among opaque ones stays.
+// The nearest entry point that is not opaque in place of a given opaque one, because single texels of hair hide the surface around
+// them. An opaque entry point among opaque entry points stays.
 uvec4 besideHair(uint map, vec2 place, int level, uvec4 bits) {
   const int kPlaces = 12; // 4 beside, 4 at the corners, 4 two away
   vec2 size = vec2(maps[map].place.zw);
@@ -298,7 +298,7 @@ void addSample(inout Gathered sum, GatherRings rings, Surface x, uint m, vec4 le
                float flux) {
   float squared = dot(to, to);
   float turned = 0.5 - 0.5 * dot(x.normal, entry.normal); // 1 - m
-  // What turns less than a quarter within the reach of a facet is one surface, through which no light comes.
+  // No light comes through a surface that turns less than a quarter within the reach of a facet: both points lie on one face.
   float opposite = turned * mix(min(sqrt(squared) * rings.perFacet, 1.0), 1.0, min(2.0 * turned, 1.0));
   float through = max(-dot(entry.normal, to), 0.0), squaredH = through * max(dot(x.normal, to), 0.0) / max(turned, 1.0e-4);
   float h = sqrt(min(squaredH, squared));

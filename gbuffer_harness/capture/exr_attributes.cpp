@@ -1,7 +1,7 @@
 #include "capture/exr_attributes.h"
 
 #include <ImfChromaticities.h>
-#include <ImfStandardAttributes.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
@@ -127,13 +127,17 @@ const std::vector<ExrAttribute>& exrAttributes() {
 
 std::vector<std::string> unusedAttributes(const Imf::Header& header) {
   std::vector<std::string> sentences;
-  if (Imf::hasChromaticities(header))
-    if (std::string sentence = otherPrimaries(Imf::chromaticities(header)); !sentence.empty())
-      sentences.push_back(std::move(sentence));
-  for (const char* name : {"colorInteropID", "oiio:ColorSpace"})
-    if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>(name);
-        space && !keepsRec709(space->value()))
-      sentences.push_back(std::string(name) + ": its colors are \"" + space->value() + "\"" + kAdvice);
+  for (const ExrAttribute& attribute : exrAttributes()) {
+    if (attribute.use != AttributeUse::Named) continue;
+    if (const auto* points = header.findTypedAttribute<Imf::ChromaticitiesAttribute>(attribute.name)) {
+      if (std::string sentence = otherPrimaries(points->value()); !sentence.empty())
+        sentences.push_back(std::move(sentence));
+    } else if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>(attribute.name);
+               space && !keepsRec709(space->value())) {
+      sentences.push_back(std::string(attribute.name) + ": its colors are \"" + space->value() + "\"" +
+                          kAdvice);
+    }
+  }
   return sentences;
 }
 

@@ -1,4 +1,4 @@
-// What the attributes of OpenEXR's headers mean for a capture.
+// Attributes of OpenEXR's headers, and their use for a capture.
 #pragma once
 
 #include <ImfHeader.h>
@@ -17,9 +17,10 @@ enum class AttributeUse {
 
 struct ExrAttribute {
   const char* name;
-  AttributeUse use;
+  AttributeUse use;  // of Named ones, chromaticities are points, and the others are names of color spaces
 };
-// What readers do with each; tests compare. Attributes outside the list have no effect.
+// All attributes that readers use, name or refuse, and others that are known to have no effect. Attributes
+// outside the list have no effect either.
 const std::vector<ExrAttribute>& exrAttributes();
 
 // A sentence for each Named attribute whose value says that colors are not linear Rec. 709's.

@@ -96,7 +96,7 @@ void warnOfThinBodies(const Capture& capture, const std::filesystem::path& file)
     warn({file.string() + ": " + sentence});
 }
 
-// Of the frame before in a turntable, which need not be drawn.
+// Gives the capture the motion since the turntable's frame before, which need not be drawn.
 void addMotion(const CaptureFrame& frame, const Vector3& center, Capture& capture) {
   const Matrix before = turnedView(capture.viewFromWorld, center, -frame.step);
   capture.motion = reference::CameraMotion(capture, capture.clipFromView, before).image();

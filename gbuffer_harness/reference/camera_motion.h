@@ -1,4 +1,4 @@
-// Where the surfaces of a frame lay in the image of the frame before.
+// Motion vectors of a moving camera.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,8 @@
 
 namespace pellucid::harness::reference {
 
-// Of surfaces that stand still in the world, seen by two cameras. The capture outlives it.
+// The motion of surfaces that stand still in the world, between the images of two cameras. The capture
+// outlives the object.
 class CameraMotion {
 public:
   // `clipFromView`, `viewFromWorld`: of the earlier camera, whose image has the later one's size. Throws
@@ -17,8 +18,8 @@ public:
   CameraMotion(const Capture& later, const Matrix& clipFromView, const Matrix& viewFromWorld);
 
   const Camera& earlierCamera() const { return earlierCamera_; }
-  // Of what the later frame's pixel shows, in the earlier camera's view space; none where nothing is seen, or
-  // behind the earlier eye.
+  // The place of the surface that the later frame's pixel shows, in the earlier camera's view space; none
+  // where the pixel shows no surface, or where the place lies behind the earlier eye.
   std::optional<glm::dvec3> earlierPlace(int x, int y) const;
   // Capture::motion of the later frame; 0 where earlierPlace() is none.
   Image image() const;

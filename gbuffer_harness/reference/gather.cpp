@@ -482,8 +482,8 @@ Gather::Sums Gather::sums(const Blocks& blocks, const Exit& exit, const Place& p
       if (y.material != 0 && y.material != exit.material + 1) continue;
       const glm::dvec3 to = exit.position - y.position;
       GatherPath path = gatherPath(to, exit.normal, y.normal);
-      // What turns little within the reach of a facet, two pixels, is one surface, through which no light
-      // comes.
+      // No light comes through a surface that turns little within the reach of a facet: both points lie on
+      // one face.
       const double turned = 1 - path.facing,
                    across = turned * std::lerp(std::min(path.distance / exit.reach, 1.0), 1.0,
                                                std::min(2 * turned, 1.0));

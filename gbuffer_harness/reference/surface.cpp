@@ -178,9 +178,9 @@ glm::dvec3 SurfaceReader::flatStep(int x, int y, const glm::dvec3& position, con
 }
 
 // Displacement along the surface per pixel step, from the neighbors of the same material to both sides. The
-// nearer one counts more, as the other may lie across an edge. Where a pixel of something else lies between,
-// as of dithered hair, the next pixel stands for the neighbor, half as far off in depth. That of a facing
-// surface when none can be used.
+// nearer neighbor counts more, as the farther one may lie across an edge. Beyond a pixel of another material,
+// as of dithered hair, the next pixel stands for the neighbor, half as far off in depth. Without neighbors
+// the displacement is that of a facing surface.
 glm::dvec3 SurfaceReader::slopeAlong(const DepthImage& depth, int x, int y, int stepX, int stepY,
                                      const glm::dvec3& position) const {
   glm::dvec3 sum(0);

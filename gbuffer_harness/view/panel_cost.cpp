@@ -1,4 +1,4 @@
-// What the dispatches cost.
+// GPU times of the dispatches, and the budget that holds a frame time.
 #include <imgui.h>
 #include <cstdint>
 

@@ -33,9 +33,8 @@ public:
   // True where the scene's colors are those of its materials, which have to be drawn anew with them.
   virtual bool drawsMaterials() const { return false; }
 
-  const ViewState& start() const {
-    return start_;
-  }  // as it is opened: size, camera, center, lights, materials
+  // As the scene is opened: size, camera, center, lights, materials.
+  const ViewState& start() const { return start_; }
   const Vector3& center() const { return start_.center; }  // what lights are dragged round, too
   double radius() const { return radius_; }                // scene units, > 0
 

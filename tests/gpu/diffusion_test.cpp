@@ -267,7 +267,7 @@ TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   }
 }
 
-// Alpha is the engine's. Where the output holds floats, no pixel of a plane rounds it to a half.
+// The engine owns alpha: in an output of floats, no pixel of a plane rounds alpha to a half.
 TEST_F(GpuTest, DiffusionKeepsTheBitsOfAlphaInFloats) {
   Capture c = flatCapture(64, 64);
   c.irradiance = Image(64, 64, 4, 0.1f);

@@ -112,7 +112,8 @@ TEST_F(Gltf, TheOriginIsNearTheCameraThatLooks) {
   EXPECT_NEAR(m.vertices[5].position[0] + m.origin[0], 4e6 + 2, 1e-6);
 }
 
-// A scene may have cameras in several places: the one that is chosen sees its own finely.
+// A scene may have cameras in several places: the origin lies near the chosen camera, whose picture then is
+// exact.
 TEST_F(Gltf, TheOriginIsNearTheChosenOfSeveralCameras) {
   GltfBuilder b = square();
   b.json["nodes"] = {{{"mesh", 0}},
