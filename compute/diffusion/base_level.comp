@@ -9,6 +9,8 @@
 #include "diffusion/texel.glsl"
 #include "lib/surface.glsl"
 
+layout(push_constant) uniform Pass { BaseLevelPass pass; };
+
 const int kQuads = PELLUCID_BLOCK / 2 / GROUP_SIDE; // a side, of an invocation
 const int kSide = PELLUCID_BLOCK / 2, kRow = kSide + 2; // quads of the block, and with those around it
 
@@ -194,7 +196,7 @@ void readQuad(ivec2 first, ivec2 quad, uint materials) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     if ((materials >> 8 * i & 255u) == 0u) continue;
     vec3 color = sanitize(source[i].rgb);
-    if (pass.value.x != 0u) imageStore(destinationImage, inImage(2 * (first + quad) + ivec2(i & 1, i >> 1)), vec4(asStored(color), source[i].a));
+    if (pass.copies != 0u) imageStore(destinationImage, inImage(2 * (first + quad) + ivec2(i & 1, i >> 1)), vec4(asStored(color), source[i].a));
     if ((s.pixels >> i & 1u) != 0u) sum += roundToHalf(color);
     if (!(depth[i] > 0.0)) continue;
     least = min(least, depth[i]);

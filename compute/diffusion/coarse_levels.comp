@@ -1,10 +1,12 @@
-// Makes levels 4 to 7 of the pyramid from level 3, as far as level pass.value.y. A group makes 2 x 1 texels of level 7 and all texels
+// Makes levels 4 to 7 of the pyramid from level 3, as far as level pass.coarsest. A group makes 2 x 1 texels of level 7 and all texels
 // of levels 4 to 6 under them. It makes anew what its texels need of other groups' parts, so that one dispatch makes all levels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #define GROUP_SIDE PELLUCID_BLOCK_GROUP
 #include "diffusion/texel.glsl"
+
+layout(push_constant) uniform Pass { CoarseLevelsPass pass; };
 
 const int kInvocations = GROUP_SIDE * GROUP_SIDE;
 // Columns and rows of level 7 that a group makes. The group needs ((kOwn + 2) << i) - 2 texels of level 7 - i: twice as many as of the
@@ -36,13 +38,13 @@ void loadRows(ivec2 corner, int first, int origin) {
 }
 
 void main() {
-  int invocation = int(gl_LocalInvocationIndex), group = int(gl_WorkGroupID.x), columns = int(pass.value.x);
+  int invocation = int(gl_LocalInvocationIndex), group = int(gl_WorkGroupID.x), columns = int(pass.columns);
   const ivec2 kOwnShift = ivec2(findMSB(kOwn.x), findMSB(kOwn.y));
   ivec2 own = ((levelRect(7u).xy >> kOwnShift) + ivec2(group % columns, group / columns)) * kOwn;
   if (invocation == 0) anySurface = 0u;
   barrier();
   int from = 0, to = 0; // slots of texel (0, 0) of the finer level's window and of the level's
-  [[dont_unroll]] for (int i = 0; i < kParts + int(pass.value.y) - 4; ++i) {
+  [[dont_unroll]] for (int i = 0; i < kParts + int(pass.coarsest) - 4; ++i) {
     int part = min(i, kParts - 1), level = 4 + i - part, shift = 7 - level, firstRow = 0;
     ivec2 size = ((kOwn + 2) << shift) - 2, corner = ((own - 1) << shift) + 1; // of the level's window
     int stride = 2 * size.x + 2;

@@ -10,6 +10,7 @@
 #include "frame/lists.glsl"
 #include "gather/probe.glsl"
 
+layout(push_constant) uniform Pass { DiffusePass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FILTERED_PROBES) uniform utexture2D probesImage;
 
 const int kInvocations = GROUP_SIDE * GROUP_ROWS, kPixelsX = PELLUCID_DIFFUSE_COLUMNS, kPixelsY = PELLUCID_DIFFUSE_ROWS;
@@ -144,9 +145,9 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
     vec3 coarser = along.x * level2[0] + along.y * level2[1] + along.z * level2[2];
     result[i] = share.rest * mix(result[i], fine[i], share.fine) + (1.0 - share.rest) * coarser; // mix may round
   }
-  if (pass.value.x != 0u) addProbesToPlane(first + local, int(pass.value.x), result);
+  if (pass.spacing != 0u) addProbesToPlane(first + local, int(pass.spacing), result);
   // All pixels share a branch, so that the latencies of their loads overlap.
-  bool last = pass.value.z != 0u;
+  bool last = pass.last != 0u;
   ivec2 top = first + local;
   vec4 written[4];
   [[unroll]] for (int i = 0; i < 4; ++i) {
@@ -238,9 +239,9 @@ void diffuseEdge(ivec2 first, ivec2 local) {
     vec3 sum = ownShare * own + fineShare * fine.rgb + a.share * a.coarser;
     vec3 divisor = ownShare + fineShare * fine.a + a.share * a.found;
     color = mix(own, max(sum, vec3(0.0)) / max(divisor, vec3(1.0e-6)), greaterThan(divisor, vec3(1.0e-6)));
-    if (pass.value.x != 0u) color = withProbes(color, pixel, int(pass.value.x), depth, material);
+    if (pass.spacing != 0u) color = withProbes(color, pixel, int(pass.spacing), depth, material);
   }
-  writeResult(inImage(pixel), color, texelFetch(sourceImage, inImage(pixel), 0).a, pass.value.z != 0u);
+  writeResult(inImage(pixel), color, texelFetch(sourceImage, inImage(pixel), 0).a, pass.last != 0u);
 }
 
 // Keeps materials and depths of the group's pixels with their ring.

@@ -9,6 +9,7 @@
 
 const int kInvocations = GROUP_SIDE * GROUP_ROWS;
 
+layout(push_constant) uniform Pass { UpsamplePass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_COARSER_LEVELS) uniform utexture2D coarserLevelsImage; // 4 to 7; pyramidImage has 2 and 3
 
 uvec4 levelTexel(uint level, ivec2 texel) {
@@ -182,7 +183,7 @@ void writeFine(ivec2 texel, uvec4 bits, Own own, Level r) {
 
 void main() {
   int invocation = int(gl_LocalInvocationIndex);
-  uint coarsest = pass.value.x, level = levelOf(invocation);
+  uint coarsest = pass.coarsest, level = levelOf(invocation);
   ivec2 k = firstPixel(blockOf(listedBlock(nearList()))) >> kBlockShift, fine = 16 * k + ivec2(gl_LocalInvocationID.xy);
   // An invocation does a texel of level 2 and, before it, one of a coarser level.
   Window window = windowOf(level, k);

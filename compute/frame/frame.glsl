@@ -18,7 +18,6 @@
 #endif
 layout(local_size_x = GROUP_SIDE, local_size_y = GROUP_ROWS) in;
 
-layout(push_constant) uniform Pass { PassConstants pass; };
 layout(set = 0, binding = PELLUCID_BINDING_FRAME) uniform Frame { FrameConstants frame; };
 layout(set = 0, binding = PELLUCID_BINDING_FRONT_DEPTH) uniform texture2D frontDepthImage;
 layout(set = 0, binding = PELLUCID_BINDING_SOURCE) uniform texture2D sourceImage;

@@ -8,6 +8,7 @@
 #include "gather/entry_level.glsl"
 #include "gather/texel_entry.glsl"
 
+layout(push_constant) uniform Pass { EntryPointsPass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_MAPS) readonly buffer EntryMaps { EntryMapConstants entryMaps[]; };
 layout(set = 0, binding = PELLUCID_BINDING_ENTRIES_DESTINATION, rgba32ui) uniform writeonly uimage2D entriesDestination;
 
@@ -20,6 +21,6 @@ void main() {
   int level = int(group.level), side = int(constants.map.z) << level;
   ivec2 own = ivec2(group.at) * GROUP_SIDE + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThan(own, (place.zw - 1) >> level))) return;
-  ivec2 texel = min(own * side + side / 2, ivec2(constants.map.xy) - 1), size = ivec2(pass.value.y & 0xFFFFu, pass.value.y >> 16);
+  ivec2 texel = min(own * side + side / 2, ivec2(constants.map.xy) - 1), size = ivec2(pass.entries & 0xFFFFu, pass.entries >> 16);
   imageStore(entriesDestination, entryPlace(place.xy, level, size) + own, entryOf(constants, texel));
 }

@@ -6,6 +6,7 @@
 #define GROUP_SIDE PELLUCID_FILTER_GROUP
 #include "gather/probe.glsl"
 
+layout(push_constant) uniform Pass { FilterProbesPass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_FOUND_PROBES) uniform utexture2D foundImage;
 layout(set = 0, binding = PELLUCID_BINDING_FILTERED_DESTINATION, rgba32ui) uniform uimage2D sharedImage;
@@ -181,7 +182,7 @@ void clearCells(ivec2 first, int side) {
 }
 
 void main() {
-  int side = int(pass.value.x);
+  int side = int(pass.spacing);
   ivec2 first;
   // Frames that accumulate go over all blocks, as lists lack those without material.
   uint word = kAccumulates ? gl_WorkGroupID.x : listedBlock(materialList());

@@ -7,6 +7,7 @@
 #include "lib/shadow.glsl"
 #include "lib/surface.glsl"
 
+layout(push_constant) uniform Pass { ProbesPass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_MATERIALS) readonly buffer Materials { MaterialConstants materials[]; };
 layout(set = 0, binding = PELLUCID_BINDING_ENTRY_POINTS) uniform utexture2D entriesImage;
 
@@ -109,11 +110,11 @@ float entrySide(LightConstants light, uint map, vec3 position) {
 
 // Level that a probe reads of a map.
 int levelOf(LightConstants light, uint map, vec3 position) {
-  return entryLevel(entrySide(light, map, position), cellSide(position.z * frame.camera.range.x, pass.value.x));
+  return entryLevel(entrySide(light, map, position), cellSide(position.z * frame.camera.range.x, pass.spacing));
 }
 
 uvec4 entryAt(uint map, vec2 place, int level) {
-  ivec2 size = ivec2(pass.value.z & 0xFFFFu, pass.value.z >> 16 & 0x7FFFu);
+  ivec2 size = ivec2(pass.entries & 0xFFFFu, pass.entries >> 16 & 0x7FFFu);
   return texelFetch(entriesImage, entryPlace(maps[map].place.xy, level, size) + (ivec2(place) >> level), 0);
 }
 
@@ -273,7 +274,7 @@ struct Pattern {
 };
 
 Pattern patternOf(ivec2 cell, uint m, float front) {
-  vec2 spacing = float(pass.value.x) * pixelSize(frame.camera, front);
+  vec2 spacing = float(pass.spacing) * pixelSize(frame.camera, front);
   bool averages = frame.motion.z > 0.0;
   float vary = averages ? 1.0 : clamp(2.0 - dot(spacing, spacing) * materials[m].gather.profile.w, 0.0, 1.0);
   // A cell and those that it shares with have one pattern each. A lattice fills the strata, and the turn between a sample and its like.
@@ -329,7 +330,7 @@ Gathered gatherSamples(uint m, LightConstants light, Surface x, Pattern pattern,
   vec3 point = mapPoint(rings.map, vec4(x.position + center / mm, 1.0));
   vec3 pointAcross = mapPoint(rings.map, vec4(across / mm, 0.0)), pointAlong = mapPoint(rings.map, vec4(along / mm, 0.0));
   vec2 direction = vec2(cos(6.28318531 * pattern.turn), sin(6.28318531 * pattern.turn));
-  uint samples = pass.value.w;
+  uint samples = pass.samples;
   float perSample = 1.0 / float(samples), inner = 0.0;
   [[dont_unroll]] for (uint i = 0u; i < samples; ++i) {
     // Lengths are mm from the foot, across and along the ring.

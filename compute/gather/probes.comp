@@ -10,7 +10,7 @@
 
 layout(set = 0, binding = PELLUCID_BINDING_PROBES_DESTINATION, rgba32ui) uniform uimage2D probesImage;
 
-const uint kAdds = 1u << 31; // of pass.value.z
+const uint kAdds = 1u << 31; // of pass.entries
 
 // Finds the first pixel of the cell with a solid's surface: all of the place but its normal. Loads of a pixel are at once, so that
 // their latencies overlap: the first pixel is the one, as a rule.
@@ -40,16 +40,16 @@ uvec4 probeAt(ivec2 cell, int side, ProbePlace place) {
   uvec4 bits = withReturned(packPlace(place), body.returned - 1.0);
   vec3 added = vec3(0.0);
   Pattern pattern = patternOf(cell, m, place.front);
-  for (uint i = 0u; i < pass.value.y; ++i) {
+  for (uint i = 0u; i < pass.lights; ++i) {
     LightConstants light = lights[i];
     added += light.radiance.rgb * gatherLight(m, light, x, pattern, body);
   }
-  if ((pass.value.z & kAdds) != 0u) added += addedOf(imageLoad(probesImage, cell));
+  if ((pass.entries & kAdds) != 0u) added += addedOf(imageLoad(probesImage, cell));
   return withAdded(bits, added);
 }
 
 void main() {
-  int side = int(pass.value.x);
+  int side = int(pass.spacing);
   ivec2 firstPixel;
   if (!materialPart(ivec2(side * PELLUCID_PROBES_GROUP), firstPixel)) return;
   ivec2 cell = firstPixel / side + ivec2(gl_LocalInvocationID.xy);

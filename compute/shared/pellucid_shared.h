@@ -118,12 +118,12 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 #define PELLUCID_SHADER_DEBUG_TRANSMITTANCE 2u
 #define PELLUCID_SHADER_DEBUG_OCCLUSION 3u
 
-// PassConstants::value.x of the translucency pass: the materials that light comes through
+// TranslucencyPass::through: the materials that light comes through
 #define PELLUCID_LIGHT_ALL 0u
 #define PELLUCID_LIGHT_WALLS 1u  // thin-walled ones alone
 #define PELLUCID_LIGHT_SOLIDS 2u // all others
 
-// PassConstants::value.z of the translucency pass
+// TranslucencyPass::write
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
 
@@ -142,6 +142,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 
 #ifdef __cplusplus
 namespace pellucid::shared {
+using uint = unsigned;
 using glm::ivec4;
 using glm::mat4;
 using glm::uvec2;
@@ -261,18 +262,40 @@ struct BlockLists {
   vec4 reach; // x: how far from a surface probes look for entry points, scene units
 };
 
-// Push constants of each pass:
-// translucency, debug view: PELLUCID_LIGHT_*, lights, PELLUCID_WRITE_*
-// add history: unused, unused, 1 if this is the last dispatch
-// base level: 1 to copy the pixels
-// coarse levels: columns of groups, coarsest level
-// upsample: coarsest level
-// diffuse: pixels a side of a cell, 0 without probes; unused; 1 if this is the last dispatch
-// entry points: unused, columns and, from bit 16 on, rows of entry points of level 0
-// probes: pixels a side of a cell, lights, columns and rows of entry points of level 0 and, in bit 31, 1 to add to what is there, samples
-// filter probes: pixels a side of a cell
-struct PassConstants {
-  uvec4 value;
+// Push constants of the passes, PELLUCID_PUSH_CONSTANT_BYTES at most. `last`: 1 in the dispatch that writes the output.
+struct TranslucencyPass { // and debug views
+  uint through; // PELLUCID_LIGHT_*
+  uint lights;
+  uint write; // PELLUCID_WRITE_*
+};
+struct AddHistoryPass {
+  uint last;
+};
+struct BaseLevelPass {
+  uint copies; // 1: pixels go to the destination, too
+};
+struct CoarseLevelsPass {
+  uint columns; // of groups
+  uint coarsest;
+};
+struct UpsamplePass {
+  uint coarsest;
+};
+struct DiffusePass {
+  uint spacing; // pixels a side of a cell; 0: the frame has no probes
+  uint last;
+};
+struct EntryPointsPass {
+  uint entries; // columns and, from bit 16 on, rows of the entry points of level 0
+};
+struct ProbesPass {
+  uint spacing; // pixels a side of a cell
+  uint lights;
+  uint entries; // as EntryPointsPass has them; bit 31: light is added to that of an earlier dispatch
+  uint samples;
+};
+struct FilterProbesPass {
+  uint spacing; // pixels a side of a cell
 };
 
 #ifdef __cplusplus

@@ -5,6 +5,7 @@
 
 #include "frame/frame.glsl"
 
+layout(push_constant) uniform Pass { AddHistoryPass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_HISTORY) uniform texture2D historyImage;
 
 void main() {
@@ -12,5 +13,5 @@ void main() {
   if (!insideRect(inLattice(at)) || materialAt(at) == 0u) return;
   vec4 source = texelFetch(sourceImage, at, 0);
   vec3 through = sanitize(texelFetch(historyImage, at, 0).rgb);
-  writeResult(at, sanitize(source.rgb) + through, source.a, pass.value.z != 0u);
+  writeResult(at, sanitize(source.rgb) + through, source.a, pass.last != 0u);
 }

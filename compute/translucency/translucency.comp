@@ -7,6 +7,7 @@
 #include "frame/frame.glsl"
 #include "translucency/transmission.glsl"
 
+layout(push_constant) uniform Pass { TranslucencyPass pass; };
 layout(set = 0, binding = PELLUCID_BINDING_LIGHTS) uniform Lights { LightConstants lights[PELLUCID_DISPATCH_LIGHTS]; };
 layout(constant_id = PELLUCID_CONSTANT_DEBUG_VIEWS) const bool kDebugViews = false;
 
@@ -24,14 +25,14 @@ Surface surfaceAt(ivec2 at, float front, float stored, uint material) {
 vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
-  bool lets = pass.value.x == PELLUCID_LIGHT_ALL || (pass.value.x == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
+  bool lets = pass.through == PELLUCID_LIGHT_ALL || (pass.through == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
   float stored = texelFetch(frontDepthImage, at, 0).x, front = frontDistanceOf(stored);
   // Marked pixels keep their irradiance.
   if (lets && front > 0.0 && (value & frame.marks.x) == 0u) {
     Surface s = surfaceAt(at, front, stored, m + 1u);
     float mm = frame.camera.range.w;
     if (s.chord >= 0.0) thickness.r = s.chord * mm;
-    for (uint i = 0u; i < pass.value.y; ++i) {
+    for (uint i = 0u; i < pass.lights; ++i) {
       LightConstants light = lights[i];
       // Debug views of light show lights with a direction.
       bool ambient = isAmbient(light);
@@ -65,14 +66,14 @@ void main() {
   ivec2 at = invocationPlace();
   bool inside = insideRect(inLattice(at));
   // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
-  bool starts = pass.value.z == PELLUCID_WRITE_STARTS;
+  bool starts = pass.write == PELLUCID_WRITE_STARTS;
   uint value = inside ? materialValueAt(at) : 0u, material = materialIndex(value);
   if (material != 0u) {
     vec4 result = resultAt(at, value, material - 1u, starts);
     if (kDebugViews)
       imageStore(destinationImage, at, result);
     else
-      writeResult(at, result.rgb, result.a, pass.value.z == PELLUCID_WRITE_LAST);
+      writeResult(at, result.rgb, result.a, pass.write == PELLUCID_WRITE_LAST);
   } else if (starts && inside) {
     imageStore(destinationImage, at, vec4(0.0));
   }

@@ -53,14 +53,8 @@ struct Stages {
 
   Stages(const Setup& setup, const Lights& all, const Blocks& blocks);
 
-  // Dispatches that write a color transient or the output.
+  // Dispatches that write colors; the last one writes the output.
   uint32_t writers() const { return walls + (history ? 1 : fused) + (diffusion ? 1 : 0) + (copies ? 1 : 0); }
-  uint32_t colorTransients() const { return nothing ? 0 : std::min(writers() - 1, 2u); }
-  // Images of packed texels: the pyramid's; the gather's probes and entry points.
-  uint32_t pyramidImages() const { return diffusion ? kPyramidImages : 0; }
-  uint32_t texelTransients() const { return pyramidImages() + (gathered > 0 ? 2 : 0); }
-  uint32_t transients() const { return colorTransients() + texelTransients() + (diffusion ? 1 : 0); }
-  uint32_t blocksTransient() const { return transients() - 1; }  // with diffusion
 };
 
 struct FrameFacts : Setup {

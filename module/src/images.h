@@ -50,6 +50,10 @@ inline const PellucidImage& historyOf(const PellucidFrame& frame) {
   return frame.structSize > offsetof(PellucidFrame, options.history) ? frame.options.history : kNone;
 }
 
+struct Extent {
+  uint32_t width = 0, height = 0;
+};
+
 struct Rect {  // pixels
   uint32_t x, y, width, height;
   bool operator==(const Rect&) const = default;

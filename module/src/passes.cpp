@@ -1,8 +1,9 @@
-// Every pass, one block each: its pipeline with what it binds, and its dispatches in a frame. At the end, the
-// data flow of a frame through them. docs/how-it-works.md tells what each pass does.
-#include "planner.h"
-
+// Every pass, one block each: the images that it makes, its pipeline with what it binds, and its dispatches in a frame. At the
+// end, the data flow of a frame through them. docs/how-it-works.md tells what each pass does.
 #include <bit>
+
+#include "entry_points.h"
+#include "planner.h"
 
 #include "kAddHistory.h"
 #include "kBaseLevel.h"
@@ -22,7 +23,15 @@ namespace {
 
 constexpr uint32_t kGather = PELLUCID_USE_GATHER, kDiffusion = PELLUCID_USE_DIFFUSION;
 
-// Bindings of every pass that goes over pixels and writes colors.
+// ---- Colors ----------------------------------------------------------------------------------------
+
+// Between passes that go over pixels and write colors, by turns.
+constexpr Extent extentOfPixels(const FrameFacts& f) { return {f.frame.imageExtent[0], f.frame.imageExtent[1]}; }
+constexpr MadeImage kColors[] = {
+    {.texels = Texels::Colors, .made = [](const FrameFacts& f) { return f.stages.writers() > 1; }, .extent = &extentOfPixels},
+    {.texels = Texels::Colors, .made = [](const FrameFacts& f) { return f.stages.writers() > 2; }, .extent = &extentOfPixels}};
+
+// Bindings of these passes.
 constexpr BindingSet kColorReads =
     bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_MATERIAL,
              PELLUCID_BINDING_SOURCE, PELLUCID_BINDING_ALBEDO, PELLUCID_BINDING_HELD);
@@ -53,13 +62,13 @@ constexpr Pass kDebugViewPass{.pipeline = "debug_view",
 // `through`: PELLUCID_LIGHT_* of materials.
 void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup& group, uint32_t through,
                uint32_t source, uint32_t destination) {
-  Step step = p.add(pass, name);
-  step.tiles(PELLUCID_GROUP_X)
+  const bool starts = destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0;
+  const uint32_t write = destination == PELLUCID_RESOURCE_OUTPUT ? PELLUCID_WRITE_LAST : starts ? PELLUCID_WRITE_STARTS : 0;
+  p.add(pass, name)
+      .tiles(PELLUCID_GROUP_X)
       .lights(group)
       .colors(source, destination)
-      .push(0, through)
-      .push(1, group.lightCount);
-  if (destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0) step.push(2, PELLUCID_WRITE_STARTS);
+      .push(shared::TranslucencyPass{through, group.lightCount, write});
 }
 
 // The lights of a group with one thickness a pixel, and debug views.
@@ -76,6 +85,11 @@ void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t
 
 // ---- Light of an earlier frame ----------------------------------------------------------------------
 
+// With reuse of pixels' light: kept between frames.
+constexpr MadeImage kLightHistory{.texels = Texels::Colors,
+                                  .made = [](const FrameFacts& f) { return f.stages.history; },
+                                  .extent = &extentOfPixels};
+
 constexpr Pass kAddHistoryPass{.pipeline = "add_history",
                                .words = kAddHistory,
                                .uses = PELLUCID_USE_REUSE,
@@ -84,10 +98,27 @@ constexpr Pass kAddHistoryPass{.pipeline = "add_history",
 
 // The light that an earlier dispatch or frame left in options.history.
 void addHistory(Planner& p, uint32_t source, uint32_t destination) {
-  p.add(kAddHistoryPass, "add history").tiles(PELLUCID_GROUP_X).colors(source, destination);
+  p.add(kAddHistoryPass, "add history")
+      .tiles(PELLUCID_GROUP_X)
+      .colors(source, destination)
+      .image(PELLUCID_BINDING_HISTORY, PELLUCID_RESOURCE_HISTORY)
+      .push(shared::AddHistoryPass{destination == PELLUCID_RESOURCE_OUTPUT});
 }
 
 // ---- Level 1 of the pyramid and the blocks' words -----------------------------------------------------
+
+constexpr bool diffuses(const FrameFacts& f) { return f.stages.diffusion; }
+
+// Level 1 and, in its place after upsampling, level 2.
+constexpr MadeImage kLevel1{.texels = Texels::Packed, .made = &diffuses, .extent = [](const FrameFacts& f) {
+                              return f.pyramid.images[imageOfLevel(kFirstLevel)];
+                            }};
+// What the blocks hold, and lists of them.
+constexpr MadeImage kBlocks{.texels = Texels::Words, .made = &diffuses, .extent = [](const FrameFacts& f) {
+                              // No rect has more blocks than the whole image.
+                              const Blocks blocks(f.lights, {0, 0, f.lattice.extent.x, f.lattice.extent.y});
+                              return Extent{Blocks::kColumns, parts(blocks.words(), Blocks::kColumns)};
+                            }};
 
 constexpr Pass kBaseLevelPass{
     .pipeline = "base_level",
@@ -105,8 +136,9 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
   step.groups(p.facts.blocks.count())
       .lights(LightGroup{})
       .image(PELLUCID_BINDING_SOURCE, source)
-      .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
-      .push(0, copies);
+      .image(PELLUCID_BINDING_LEVELS, kLevel1)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::BaseLevelPass{copies});
   if (copies)
     step.image(PELLUCID_BINDING_DESTINATION, copy);
   else
@@ -114,6 +146,13 @@ void addBaseLevel(Planner& p, uint32_t source, uint32_t copy) {
 }
 
 // ---- Downsampling -------------------------------------------------------------------------------------
+
+constexpr MadeImage kLevels2And3{.texels = Texels::Packed, .made = &diffuses, .extent = [](const FrameFacts& f) {
+                                   return f.pyramid.images[imageOfLevel(2)];
+                                 }};
+constexpr MadeImage kCoarserLevels{.texels = Texels::Packed, .made = &diffuses, .extent = [](const FrameFacts& f) {
+                                     return f.pyramid.images[imageOfLevel(4)];
+                                   }};
 
 constexpr Pass kDownsamplePass{
     .pipeline = "downsample",
@@ -127,8 +166,9 @@ void addDownsample(Planner& p) {
   constexpr uint32_t kRowsOfLevel3 = PELLUCID_BLOCK / 8;  // in a block
   p.add(kDownsamplePass, "downsample")
       .blocks(PELLUCID_LIST_DOWNSAMPLE, kRowsOfLevel3 / PELLUCID_DOWNSAMPLE_ROWS)
-      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
-      .image(PELLUCID_BINDING_LEVELS, p.level(2));
+      .image(PELLUCID_BINDING_PYRAMID, kLevel1)
+      .image(PELLUCID_BINDING_LEVELS, kLevels2And3)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks);
 }
 
 constexpr Pass kCoarseLevelsPass{.pipeline = "coarse_levels",
@@ -144,16 +184,17 @@ uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
 }
 
-// Levels 4 to `coarsest`. Their parts follow level 7, whether or not that is made.
-void addCoarseLevels(Planner& p, uint32_t coarsest) {
+// Levels 4 to the coarsest. Their parts follow level 7, whether or not that is made.
+void addCoarseLevels(Planner& p) {
+  if (p.facts.coarsestLevel <= 3) return;
   const auto& rect = p.facts.pyramid.levels[PELLUCID_LAST_LEVEL].rect;
   const uint32_t columns = groupsAlong(rect.x, rect.width, PELLUCID_COARSE_COLUMNS);
   p.add(kCoarseLevelsPass, "coarse levels")
       .groups(columns * groupsAlong(rect.y, rect.height, PELLUCID_COARSE_ROWS))
-      .image(PELLUCID_BINDING_PYRAMID, p.level(3))
-      .image(PELLUCID_BINDING_LEVELS, p.level(4))
-      .push(0, columns)
-      .push(1, coarsest)
+      .image(PELLUCID_BINDING_PYRAMID, kLevels2And3)
+      .image(PELLUCID_BINDING_LEVELS, kCoarserLevels)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::CoarseLevelsPass{columns, p.facts.coarsestLevel})
       .list(PELLUCID_LIST_COARSE);
 }
 
@@ -167,36 +208,14 @@ constexpr Pass kUpsamplePass{
                       PELLUCID_BINDING_COARSER_LEVELS, PELLUCID_BINDING_BLOCKS),
     .writes = bindings(PELLUCID_BINDING_LEVELS)};
 
-void addUpsample(Planner& p, uint32_t coarsest) {
+void addUpsample(Planner& p) {
   p.add(kUpsamplePass, "upsample")
       .blocks(PELLUCID_LIST_UPSAMPLE, 1)
-      .image(PELLUCID_BINDING_LEVELS, p.level(kFirstLevel))
-      .image(PELLUCID_BINDING_PYRAMID, p.level(2))
-      .image(PELLUCID_BINDING_COARSER_LEVELS, p.level(4))
-      .push(0, coarsest);
-}
-
-// ---- Diffusion of pixels ------------------------------------------------------------------------------
-
-constexpr Pass kDiffusePass{
-    .pipeline = "diffuse",
-    .words = kDiffuse,
-    .uses = kDiffusion,
-    .reads = kColorReads |
-             bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
-    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS),
-    .counted = Counted::Blocks};
-
-// With the light of the probes, if the frame has some.
-void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
-  const bool probes = p.facts.stages.gathered > 0;
-  Step step = p.add(kDiffusePass, "diffuse");
-  step.blocks(PELLUCID_LIST_DIFFUSE,
-              PELLUCID_BLOCK / PELLUCID_DIFFUSE_COLUMNS * (PELLUCID_BLOCK / PELLUCID_DIFFUSE_ROWS))
-      .colors(source, destination)
-      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
-      .push(0, probes ? p.facts.gatherSpacing : 0);
-  if (!probes) step.standIn(PELLUCID_BINDING_FILTERED_PROBES, p.level(kFirstLevel));
+      .image(PELLUCID_BINDING_LEVELS, kLevel1)
+      .image(PELLUCID_BINDING_PYRAMID, kLevels2And3)
+      .image(PELLUCID_BINDING_COARSER_LEVELS, kCoarserLevels)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::UpsamplePass{p.facts.coarsestLevel});
 }
 
 // ---- Entry points of the gather -----------------------------------------------------------------------
@@ -213,13 +232,30 @@ constexpr Pass kEntryPointsPass{
     .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
     .counted = Counted::EntryPoints};
 
-// Columns and, from bit 16 on, rows of a group's entry points of level 0.
+constexpr bool gathers(const FrameFacts& f) { return f.stages.gathered > 0; }
+
+constexpr Extent extentOfCells(const FrameFacts& f) {
+  return {parts(f.lattice.extent.x, f.gatherSpacing), parts(f.lattice.extent.y, f.gatherSpacing)};
+}
+
+// Entry points of the maps of a dispatch and, in their place, filtered probes.
+constexpr MadeImage kEntries{.texels = Texels::Packed, .made = &gathers, .extent = [](const FrameFacts& f) {
+                               const Extent cells = extentOfCells(f);
+                               return Extent{std::max(cells.width, withCoarserEntries(f.lights.entryColumns)),
+                                             std::max(cells.height, f.lights.entryRows)};
+                             }};
+
+// shared::EntryPointsPass::entries
 uint32_t entriesOf(const LightGroup& group) { return group.entryColumns | group.entryRows << 16; }
+
 void addEntryPoints(Planner& p, const LightGroup& group) {
   const uint32_t columns = parts(group.entryWidth, PELLUCID_ENTRY_POINTS_GROUP),
                  rows = parts(group.entryHeight, PELLUCID_ENTRY_POINTS_GROUP);
   Step step = p.add(kEntryPointsPass, "entry points");
-  step.lights(group).push(1, entriesOf(group));
+  step.lights(group)
+      .image(PELLUCID_BINDING_ENTRIES_DESTINATION, kEntries)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::EntryPointsPass{entriesOf(group)});
   if (p.facts.stages.lists)
     step.groups(group.entryGroups).list(PELLUCID_LIST_ENTRIES);
   else
@@ -241,6 +277,8 @@ constexpr Pass kProbesPass{.pipeline = "probes",
                            .writes = kProbeWrites,
                            .counted = Counted::Probes};
 
+constexpr MadeImage kFoundProbes{.texels = Texels::Packed, .made = &gathers, .extent = &extentOfCells};
+
 // Groups of `side` x `side` cells in a block.
 uint32_t partsOfBlock(const FrameFacts& f, uint32_t side) {
   const uint32_t along = PELLUCID_BLOCK / (side * f.gatherSpacing);
@@ -251,11 +289,12 @@ void addProbes(Planner& p, const LightGroup& group, bool adds) {
   p.add(kProbesPass, "probes")
       .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
       .lights(group)
-      .image(PELLUCID_BINDING_PYRAMID, p.level(kFirstLevel))
-      .push(0, p.facts.gatherSpacing)
-      .push(1, group.gathered)
-      .push(2, entriesOf(group) | (adds ? 1u << 31 : 0))
-      .push(3, p.facts.gatherSamples);
+      .image(PELLUCID_BINDING_PYRAMID, kLevel1)
+      .image(PELLUCID_BINDING_ENTRY_POINTS, kEntries)
+      .image(PELLUCID_BINDING_PROBES_DESTINATION, kFoundProbes)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::ProbesPass{p.facts.gatherSpacing, group.gathered, entriesOf(group) | (adds ? 1u << 31 : 0),
+                               p.facts.gatherSamples});
 }
 
 // ---- Filter of probes ---------------------------------------------------------------------------------
@@ -277,16 +316,57 @@ constexpr Pass kAccumulateProbesPass{.pipeline = "accumulate_probes",
                                      .writes = kFilterProbesPass.writes,
                                      .constants = kAccumulates};
 
+// With reuse of the gather: kept between frames. With accumulation, the earlier frame's probes lie above or below this frame's.
+constexpr MadeImage kProbeHistory{.texels = Texels::Packed,
+                                  .made = [](const FrameFacts& f) { return f.stages.keepsProbes; },
+                                  .extent = [](const FrameFacts& f) {
+                                    const Extent cells = extentOfCells(f);
+                                    return Extent{cells.width, f.stages.accumulates ? 2 * cells.height : cells.height};
+                                  }};
+uint32_t filteredProbes(const Planner& p) {
+  return p.facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : p.resource(kEntries);
+}
+
 // With accumulation, over all blocks: the next frame reads cells that lost their material, too.
 void addProbeFilter(Planner& p) {
   const bool accumulates = p.facts.stages.accumulates;
   const uint32_t perBlock = partsOfBlock(p.facts, PELLUCID_FILTER_GROUP);
   Step step = p.add(accumulates ? kAccumulateProbesPass : kFilterProbesPass, "filter probes");
-  step.push(0, p.facts.gatherSpacing);
+  step.image(PELLUCID_BINDING_FOUND_PROBES, kFoundProbes)
+      .image(PELLUCID_BINDING_FILTERED_DESTINATION, filteredProbes(p))
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::FilterProbesPass{p.facts.gatherSpacing});
   if (accumulates)
     step.groups(p.facts.blocks.count(), perBlock);
   else
     step.blocks(PELLUCID_LIST_FILTER, perBlock);
+}
+
+// ---- Diffusion of pixels ------------------------------------------------------------------------------
+
+constexpr Pass kDiffusePass{
+    .pipeline = "diffuse",
+    .words = kDiffuse,
+    .uses = kDiffusion,
+    .reads = kColorReads |
+             bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
+    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS),
+    .counted = Counted::Blocks};
+
+// With the light of the probes, if the frame has some.
+void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
+  const bool probes = p.facts.stages.gathered > 0;
+  Step step = p.add(kDiffusePass, "diffuse");
+  step.blocks(PELLUCID_LIST_DIFFUSE,
+              PELLUCID_BLOCK / PELLUCID_DIFFUSE_COLUMNS * (PELLUCID_BLOCK / PELLUCID_DIFFUSE_ROWS))
+      .colors(source, destination)
+      .image(PELLUCID_BINDING_PYRAMID, kLevel1)
+      .image(PELLUCID_BINDING_BLOCKS, kBlocks)
+      .push(shared::DiffusePass{probes ? p.facts.gatherSpacing : 0, destination == PELLUCID_RESOURCE_OUTPUT});
+  if (probes)
+    step.image(PELLUCID_BINDING_FILTERED_PROBES, filteredProbes(p));
+  else
+    step.standIn(PELLUCID_BINDING_FILTERED_PROBES, p.resource(kLevel1));
 }
 
 // ---- All ----------------------------------------------------------------------------------------------
@@ -300,6 +380,11 @@ constexpr bool fitSlots() {
   return true;
 }
 static_assert(std::size(kPasses) <= kMostPasses && fitSlots());
+
+// In the order of frame.transients.
+constexpr const MadeImage* kTransients[] = {&kColors[0],     &kColors[1],    &kLevel1,  &kLevels2And3,
+                                            &kCoarserLevels, &kFoundProbes, &kEntries, &kBlocks};
+static_assert(std::size(kTransients) <= PELLUCID_MAX_TRANSIENTS);
 
 // ---- A frame -----------------------------------------------------------------------------------------
 
@@ -324,7 +409,7 @@ private:
   void pixels(Add&& add) {
     uint32_t destination = PELLUCID_RESOURCE_OUTPUT;
     if (--remaining_ > 0) {
-      destination = kTransient0 + next_;
+      destination = p_.resource(kColors[next_]);
       next_ ^= 1;
     }
     add(source_, destination);
@@ -359,9 +444,9 @@ private:
     else
       addBaseLevel(p_, source_, source_);
     addDownsample(p_);
-    if (p_.facts.coarsestLevel > 3) addCoarseLevels(p_, p_.facts.coarsestLevel);
+    addCoarseLevels(p_);
     gather();
-    addUpsample(p_, p_.facts.coarsestLevel);
+    addUpsample(p_);
     pixels([&](uint32_t from, uint32_t to) { addDiffuse(p_, from, to); });
   }
 
@@ -392,5 +477,7 @@ bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
 }
 
 std::span<const Pass* const> allPasses() { return kPasses; }
+std::span<const MadeImage* const> transientImages() { return kTransients; }
+const MadeImage& historyImage(const FrameFacts& f) { return f.stages.keepsProbes ? kProbeHistory : kLightHistory; }
 
 }  // namespace pellucid

@@ -9,7 +9,7 @@ namespace pellucid {
 
 Step::Step(Planner& planner, const Pass& pass, PellucidDispatch& d) : planner_(planner), pass_(pass), d_(d) {
   forEach(pass.bindings(), [&](const Binding& b) {
-    if (b.type == kSampled || b.type == kStored) image(b.number, planner.resourceOf(b.number));
+    if (b.type == kSampled || b.type == kStored) image(b.number, planner.inputOf(b.number));
   });
   const ConstantsLayout& layout = planner.facts.constants;
   constants(PELLUCID_BINDING_FRAME, layout.frame);
@@ -23,16 +23,13 @@ void Step::constants(uint32_t binding, VkDeviceSize offset) {
     d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(offset / kSlotBytes);
 }
 
-Step& Step::push(uint32_t index, uint32_t value) {
-  d_.pushConstants[index] = value;
-  return *this;
-}
-
 Step& Step::image(uint32_t binding, uint32_t resource) {
   if (binding < PELLUCID_BINDING_SHADOW_IMAGES && has(pass_.bindings(), binding))
     d_.slots[slotOf(pass_, binding)] = static_cast<uint16_t>(resource);
   return *this;
 }
+
+Step& Step::image(uint32_t binding, const MadeImage& made) { return image(binding, planner_.resource(made)); }
 
 Step& Step::standIn(uint32_t binding, uint32_t resource) {
   planner_.standIns_[static_cast<size_t>(&d_ - planner_.plan_.dispatches)] |= bindings(binding);
@@ -40,12 +37,9 @@ Step& Step::standIn(uint32_t binding, uint32_t resource) {
 }
 
 Step& Step::colors(uint32_t source, uint32_t destination) {
-  const bool last = destination == PELLUCID_RESOURCE_OUTPUT;
-  if (last && planner_.facts.frame.options.addToOutput == 1)
+  if (destination == PELLUCID_RESOURCE_OUTPUT && planner_.facts.frame.options.addToOutput == 1)
     image(PELLUCID_BINDING_HELD, PELLUCID_RESOURCE_OUTPUT);
-  return image(PELLUCID_BINDING_SOURCE, source)
-      .image(PELLUCID_BINDING_DESTINATION, destination)
-      .push(2, last);
+  return image(PELLUCID_BINDING_SOURCE, source).image(PELLUCID_BINDING_DESTINATION, destination);
 }
 
 Step& Step::lights(const LightGroup& group) {
@@ -94,29 +88,22 @@ Step& Step::list(uint32_t which) {
 
 // ---- The plan
 
-// Image of a binding of that name.
-uint32_t Planner::resourceOf(uint32_t binding) const {
-  // A flag keeps inputs unread that the frame lacks, but bindings hold a view: the front depth stands in.
+uint32_t Planner::resource(const MadeImage& image) const {
+  uint32_t resource = kTransient0;
+  for (const MadeImage* other : transientImages()) {
+    if (other == &image) break;
+    resource += other->made(facts);
+  }
+  return resource;
+}
+
+// The caller's image of a binding of that name. A flag keeps inputs unread that the frame lacks, but bindings hold a view: the
+// front depth stands in.
+uint32_t Planner::inputOf(uint32_t binding) const {
   for (const ImageField& image : kImageFields)
     if (image.binding == binding && (image.required || given(facts.frame.*image.field)))
       return image.resource;
-  switch (binding) {
-    case PELLUCID_BINDING_HISTORY:
-      return PELLUCID_RESOURCE_HISTORY;
-    case PELLUCID_BINDING_ENTRY_POINTS:
-    case PELLUCID_BINDING_ENTRIES_DESTINATION:
-      return entryPoints();
-    case PELLUCID_BINDING_FOUND_PROBES:
-    case PELLUCID_BINDING_PROBES_DESTINATION:
-      return probes();
-    case PELLUCID_BINDING_FILTERED_PROBES:
-    case PELLUCID_BINDING_FILTERED_DESTINATION:
-      return filteredProbes();
-    case PELLUCID_BINDING_BLOCKS:
-      return blocks();
-    default:
-      return PELLUCID_RESOURCE_FRONT_DEPTH;
-  }
+  return PELLUCID_RESOURCE_FRONT_DEPTH;
 }
 
 Step Planner::add(const Pass& pass, const char* name) {

@@ -4,21 +4,47 @@
 #pragma once
 
 #include <array>
+#include <cstring>
 
 #include "frame.h"
 #include "plan.h"
 
 namespace pellucid {
 
+enum class Texels : uint8_t {
+  Colors,  // FrameFacts::colorFormat
+  Packed,  // R32G32B32A32_UINT
+  Words    // R32_UINT
+};
+
+// An image that passes make and no caller gives: a transient, or options.history.
+struct MadeImage {
+  Texels texels;
+  bool (*made)(const FrameFacts&);      // with or without reuse
+  Extent (*extent)(const FrameFacts&);  // of frames with any render rect
+};
+
+// All transients, in the order of PellucidFrame::transients; a frame has those that it makes.
+std::span<const MadeImage* const> transientImages();
+// Of a frame that keepsHistory.
+const MadeImage& historyImage(const FrameFacts& facts);
+
 class Planner;
 
-// A dispatch that was added to a plan, until the next one is. Its bindings hold the frame's images, constants
-// and transients of those names; a step sets what varies.
+// A dispatch that was added to a plan, until the next one is. Its bindings hold the frame's inputs and constants of those names;
+// a step sets all others.
 class Step {
 public:
-  Step& push(uint32_t index, uint32_t value);
+  // One of the structs of push constants.
+  template <class Constants>
+  Step& push(const Constants& constants) {
+    static_assert(sizeof constants <= PELLUCID_PUSH_CONSTANT_BYTES);
+    std::memcpy(d_.pushConstants, &constants, sizeof constants);
+    return *this;
+  }
   // PellucidResource of an image binding that the pass has.
   Step& image(uint32_t binding, uint32_t resource);
+  Step& image(uint32_t binding, const MadeImage& made);
   // The same for a view that the dispatch has, but does not use.
   Step& standIn(uint32_t binding, uint32_t resource);
   // Image that pixels come from, and image that they go to: the output is the frame's last write.
@@ -52,19 +78,8 @@ public:
 
   Step add(const Pass& pass, const char* name);
 
-  // Image of a level of the pyramid. The first holds level 2 after upsampling, too.
-  uint32_t level(uint32_t level) const {
-    return kTransient0 + facts.stages.colorTransients() + imageOfLevel(level);
-  }
-  // Images of the gather's probes; of the entry points of the maps and, in their place, the filtered probes.
-  uint32_t probes() const {
-    return kTransient0 + facts.stages.colorTransients() + facts.stages.pyramidImages();
-  }
-  uint32_t entryPoints() const { return probes() + 1; }
-  uint32_t filteredProbes() const {
-    return facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : entryPoints();
-  }
-  uint32_t blocks() const { return kTransient0 + facts.stages.blocksTransient(); }
+  // PellucidResource of a transient.
+  uint32_t resource(const MadeImage& image) const;
 
   // Orders all that was added. False: there is more than a plan holds.
   bool finish();
@@ -81,7 +96,7 @@ private:
   };
   void addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images);
   Access accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const;
-  uint32_t resourceOf(uint32_t binding) const;
+  uint32_t inputOf(uint32_t binding) const;
 
   PellucidPlan& plan_;
   bool fits_ = true;

@@ -32,9 +32,6 @@ struct Pyramid {
   int32_t sharesColumn = 0;
 
   // Extents of the images, for any render rect.
-  struct Extent {
-    uint32_t width = 0, height = 0;
-  };
   std::array<Extent, kPyramidImages> images{};
 };
 

@@ -219,7 +219,9 @@ void checkViews(const FrameFacts& facts, Findings& out) {
       out.error("motion", "has no view, but reuse ACCUMULATE needs it");
     checkGeneral(f.options.history, "options.history", out);
   }
-  for (uint32_t i = 0; i < facts.stages.transients(); ++i) {
+  uint32_t transients = 0;
+  for (const MadeImage* image : transientImages()) transients += image->made(facts);
+  for (uint32_t i = 0; i < transients; ++i) {
     const Field field("transients[", i, "]");
     if (!given(f.transients[i])) out.error(field, "has no view; see pellucidGetImageNeeds");
     checkGeneral(f.transients[i], field, out);
