@@ -14,7 +14,6 @@ namespace pellucid::test {
 // skin1-like numbers; only their validity matters where no picture is compared.
 inline PellucidMaterial plainMaterial() {
   PellucidMaterial m{};
-  m.structSize = sizeof m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   m.gaussianCount = 2;
   for (int c = 0; c < 3; ++c) {

@@ -11,7 +11,6 @@
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
-#include "struct_size.h"
 #include "transmittance.h"
 
 namespace pellucid::material {
@@ -206,7 +205,6 @@ void compileThinWall(const PellucidMaterialDesc& desc, Result& result) {
 Result compile(const PellucidMaterialDesc& desc) {
   requireCount("gaussianCount", desc.gaussianCount, 1, PELLUCID_MAX_GAUSSIANS);
   Result result;
-  result.material.structSize = sizeof(PellucidMaterial);
   if (const std::optional<Description> medium = describe(desc))
     compileMedium(*medium, desc.gaussianCount, result);
   else if (desc.kind == PELLUCID_MATERIAL_BURLEY)
@@ -233,7 +231,6 @@ using namespace pellucid::material;
 
 void pellucidInitMaterialDesc(PellucidMaterialDesc* desc) {
   *desc = {};
-  desc->structSize = sizeof(PellucidMaterialDesc);
   desc->gaussianCount = 6;
   desc->melanin = 0.005;
   desc->melaninType = 0.5;
@@ -244,8 +241,8 @@ PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, Pelluci
                                        PellucidMaterialReport* report, PellucidMessageFn message,
                                        void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireStruct("desc", desc);
-    if (material == nullptr) throw Refusal("material", "NULL");
+    require("desc", desc);
+    require("material", material);
     const Result result = compile(*desc);
     *material = result.material;
     if (report != nullptr) *report = result.report;
@@ -255,7 +252,7 @@ PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, Pelluci
 PellucidResult pellucidSlabTransport(double scattering, double absorption, double ior, double thickness,
                                      PellucidSlab* slab, PellucidMessageFn message, void* messageUser) {
   return guarded(message, messageUser, [&] {
-    if (slab == nullptr) throw Refusal("slab", "NULL");
+    require("slab", slab);
     PellucidMaterialDesc desc;
     pellucidInitMaterialDesc(&desc);
     const Coefficients coefficients =
@@ -271,7 +268,7 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
                                      const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
                                      void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireStruct("desc", desc);
+    require("desc", desc);
     if (count > 0 && thickness == nullptr) throw Refusal("thickness", "NULL");
     if (count > 0 && slabs == nullptr) throw Refusal("slabs", "NULL");
     for (std::size_t i = 0; i < count; ++i)
@@ -296,8 +293,7 @@ PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t 
 
 double pellucidEvaluateTransmittance(const PellucidMaterial* material, uint32_t channel, double thickness) {
   if (material == nullptr || channel > 2) return std::numeric_limits<double>::quiet_NaN();
-  // An older caller's struct ends before fields of thin walls.
-  return pellucid::transmittance(pellucid::readStruct(material, PellucidMaterial{}), channel, thickness);
+  return pellucid::transmittance(*material, channel, thickness);
 }
 
 uint32_t pellucidPresetCount(void) { return static_cast<uint32_t>(presets().size()); }

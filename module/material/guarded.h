@@ -8,15 +8,9 @@
 
 namespace pellucid::material {
 
-// Refuses a NULL, and a struct of another version. `name`: the argument's.
-template <class Struct>
-void requireStruct(const char* name, const Struct* given) {
+// Refuses a NULL. `name`: the argument's.
+inline void require(const char* name, const void* given) {
   if (given == nullptr) throw Refusal(name, "NULL");
-  if (given->structSize != sizeof(Struct))
-    throw Refusal(
-        "structSize",
-        std::to_string(given->structSize) + " is not this library's " + std::to_string(sizeof(Struct)),
-        PELLUCID_ERROR_VERSION);
 }
 
 // Runs `body` and turns what it throws into a result code and a message.

@@ -77,7 +77,6 @@ using namespace pellucid::material;
 
 void pellucidInitOpenPbr(PellucidOpenPbr* material) {
   *material = {};
-  material->structSize = sizeof(PellucidOpenPbr);
   std::fill_n(material->subsurfaceColor, 3, 0.8);
   material->subsurfaceRadius = 1;
   material->subsurfaceRadiusScale[0] = 1;
@@ -90,7 +89,7 @@ void pellucidInitOpenPbr(PellucidOpenPbr* material) {
 PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
                                        PellucidMessageFn message, void* messageUser) {
   return guarded(message, messageUser, [&] {
-    requireStruct("material", material);
+    require("material", material);
     if (desc == nullptr) throw Refusal("desc", "NULL");
     *desc = describeOpenPbr(*material);
   });

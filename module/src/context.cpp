@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "constants.h"
-#include "struct_size.h"
 
 namespace pellucid {
 
@@ -175,20 +174,10 @@ const char* loadVkTable(PFN_vkGetDeviceProcAddr getDeviceProcAddr, VkDevice devi
 
 using namespace pellucid;
 
-extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* given, PellucidContext** context) {
+extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context) {
   if (!context) return PELLUCID_ERROR_INVALID_ARGUMENT;
   *context = nullptr;
-  if (!given) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  if (!canReadStruct(given, kLeastContextDesc)) {
-    // A struct that is too short has no callback to read.
-    constexpr size_t kHasMessage = offsetof(PellucidContextDesc, messageUser) + sizeof given->messageUser;
-    const bool tells = given->structSize >= kHasMessage;
-    Findings out(tells ? given->message : nullptr, tells ? given->messageUser : nullptr);
-    checkStructSize(given, kLeastContextDesc, "structSize", "pellucidInitContextDesc", out);
-    return out.result();
-  }
-  const PellucidContextDesc whole = readStruct(given, defaultContextDesc());
-  const PellucidContextDesc* desc = &whole;
+  if (!desc) return PELLUCID_ERROR_INVALID_ARGUMENT;
   Findings out(desc->message, desc->messageUser);
   checkDesc(*desc, out);
   if (!out.ok()) return out.result();

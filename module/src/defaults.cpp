@@ -1,63 +1,33 @@
 // Values of fields that callers leave alone.
-#include "struct_size.h"
+#include "pellucid/pellucid_thesis.h"
 
-namespace pellucid {
-
-// A field that is appended must not land in bytes that older headers left undefined.
-#define ENDS_WITH(Struct, field) \
-  (offsetof(Struct, field) + sizeof(static_cast<Struct*>(nullptr)->field) == sizeof(Struct))
-static_assert(ENDS_WITH(PellucidFrame, options.motionScale));
-static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
-static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
-static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
-#undef ENDS_WITH
-
-PellucidFrame defaultFrame() {
-  PellucidFrame frame{};
-  frame.structSize = sizeof frame;
-  frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
-  frame.metersPerUnit = 1;
-  frame.options.motionScale[0] = frame.options.motionScale[1] = 1;
-  for (int i = 0; i < 4; ++i) frame.viewFromWorld[i * 5] = 1;
-  frame.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  frame.options.coherenceThreshold = 0.005f;
-  frame.options.gatherSamples = 8;
-  frame.options.indirectDispatches = 1;
-  frame.preExposure = 1;
-  return frame;
+extern "C" void pellucidInitFrame(PellucidFrame* frame) {
+  if (!frame) return;
+  *frame = {};
+  frame->options.features = PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION;
+  frame->metersPerUnit = 1;
+  frame->options.motionScale[0] = frame->options.motionScale[1] = 1;
+  for (int i = 0; i < 4; ++i) frame->viewFromWorld[i * 5] = 1;
+  frame->options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  frame->options.coherenceThreshold = 0.005f;
+  frame->options.gatherSamples = 8;
+  frame->options.indirectDispatches = 1;
+  frame->preExposure = 1;
 }
 
-PellucidThesisOptions defaultThesisOptions() {
-  PellucidThesisOptions options{};
-  options.structSize = sizeof options;
-  for (float& factor : options.transmittanceFilter) factor = 1;
-  options.faceVector[2] = 1;
-  options.upAxis[1] = 1;
-  return options;
+extern "C" void pellucidInitThesisOptions(PellucidThesisOptions* options) {
+  if (!options) return;
+  *options = {};
+  for (float& factor : options->transmittanceFilter) factor = 1;
+  options->faceVector[2] = 1;
+  options->upAxis[1] = 1;
 }
 
-PellucidContextDesc defaultContextDesc() {
-  PellucidContextDesc desc{};
-  desc.structSize = sizeof desc;
-  desc.headerVersion = PELLUCID_HEADER_VERSION;
-  desc.apiVersion = VK_API_VERSION_1_1;
-  desc.options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
-  desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D;
-  return desc;
-}
-
-}  // namespace pellucid
-
-using namespace pellucid;
-
-extern "C" void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize) {
-  writeStruct(frame, structSize, defaultFrame());
-}
-
-extern "C" void pellucidInitThesisOptionsSized(PellucidThesisOptions* options, size_t structSize) {
-  writeStruct(options, structSize, defaultThesisOptions());
-}
-
-extern "C" void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize) {
-  writeStruct(desc, structSize, defaultContextDesc());
+extern "C" void pellucidInitContextDesc(PellucidContextDesc* desc) {
+  if (!desc) return;
+  *desc = {};
+  desc->headerVersion = PELLUCID_HEADER_VERSION;
+  desc->apiVersion = VK_API_VERSION_1_1;
+  desc->options.outputFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
+  desc->options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D;
 }

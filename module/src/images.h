@@ -41,15 +41,6 @@ constexpr std::array kImageFields = {
 
 inline bool given(const PellucidImage& image) { return image.view != VK_NULL_HANDLE; }
 
-// Fields that frames of older headers lack.
-inline VkDescriptorPool poolOf(const PellucidFrame& frame) {
-  return frame.structSize > offsetof(PellucidFrame, options.descriptorPool) ? frame.options.descriptorPool : VK_NULL_HANDLE;
-}
-inline const PellucidImage& historyOf(const PellucidFrame& frame) {
-  static constexpr PellucidImage kNone{};
-  return frame.structSize > offsetof(PellucidFrame, options.history) ? frame.options.history : kNone;
-}
-
 struct Extent {
   uint32_t width = 0, height = 0;
 };
@@ -73,7 +64,7 @@ constexpr uint32_t parts(uint32_t length, uint32_t part) { return (length + part
 // The image of any image resource; a transient's and shadow image's by their index.
 inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
   if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_HISTORY) return historyOf(frame);
+  if (resource == PELLUCID_RESOURCE_HISTORY) return frame.options.history;
   for (const ImageField& image : kImageFields)
     if (image.resource == resource) return frame.*image.field;
   return frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];

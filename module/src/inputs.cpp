@@ -2,16 +2,10 @@
 
 #include <algorithm>
 
-#include "struct_size.h"
-
 namespace pellucid {
 
 PellucidMaterial Inputs::material(uint32_t index) const {
-  // The caller's structs lie as far apart as each is long.
-  const auto* bytes = reinterpret_cast<const unsigned char*>(frame.materials);
-  const size_t offset = static_cast<size_t>(index) * frame.materials->structSize;
-  PellucidMaterial m =
-      readStruct(reinterpret_cast<const PellucidMaterial*>(bytes + offset), PellucidMaterial{});
+  PellucidMaterial m = frame.materials[index];
   if (m.thinWalled == 0) return m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   for (int c = 0; c < 3; ++c) {
@@ -32,14 +26,11 @@ bool readInputs(const PellucidFrame* frame, Findings& out, Inputs* inputs) {
     out.error("frame", "is NULL");
     return false;
   }
-  if (!checkStructSize(frame, kLeastFrame, "structSize", "pellucidInitFrame", out)) return false;
-  inputs->frame = readStruct(frame, defaultFrame());
-  inputs->thesis = defaultThesisOptions();
-  if (const PellucidThesisOptions* thesis = inputs->frame.options.thesis) {
-    if (!checkStructSize(thesis, kLeastThesisOptions, "thesis.structSize", "pellucidInitThesisOptions", out))
-      return false;
-    inputs->thesis = readStruct(thesis, inputs->thesis);
-  }
+  inputs->frame = *frame;
+  if (frame->options.thesis)
+    inputs->thesis = *frame->options.thesis;
+  else
+    pellucidInitThesisOptions(&inputs->thesis);
   for (const ImageField& image : kImageFields)
     if (given(inputs->frame.*image.field)) inputs->images |= 1u << image.resource;
   return true;

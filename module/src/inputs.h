@@ -1,4 +1,4 @@
-// The caller's structs, with the defaults of fields that they lack. The first of a frame's facts.
+// The caller's structs. The first of a frame's facts.
 #pragma once
 
 #include "findings.h"
@@ -24,8 +24,7 @@ struct Inputs {
     return (frame.options.materialMask == 0 ? UINT32_MAX : frame.options.materialMask) >> frame.options.materialShift;
   }
 
-  // frame.materials[index] with the defaults of fields that the caller's lacks. A thin wall's T(d) is
-  // constant.
+  // frame.materials[index]. A thin wall's T(d) is constant.
   PellucidMaterial material(uint32_t index) const;
   // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes
   // add gathered light there, too.
@@ -49,7 +48,7 @@ struct Inputs {
   }
 };
 
-// Sizes of the caller's structs are checked before anything else of them is read; false: an error.
+// False: an error.
 bool readInputs(const PellucidFrame* frame, Findings& out, Inputs* inputs);
 
 }  // namespace pellucid

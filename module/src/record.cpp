@@ -15,7 +15,7 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
   VkDescriptorSet set = VK_NULL_HANDLE;
   if (c.desc.options.descriptorPools) {
     VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-    info.descriptorPool = poolOf(*view.frame);
+    info.descriptorPool = view.frame->options.descriptorPool;
     info.descriptorSetCount = 1;
     info.pSetLayouts = &c.setLayouts[d.pipeline];
     const VkResult result = c.vk.vkAllocateDescriptorSets(c.device, &info, &set);
@@ -99,7 +99,7 @@ PellucidResult record(const PellucidContext& c, VkCommandBuffer commandBuffer,
                       std::span<const PellucidView> views, bool named) {
   if (const PellucidResult result = checkViews(c, views, named); result != PELLUCID_OK) return result;
   if (c.desc.options.descriptorPools)
-    for (const PellucidView& view : views) c.vk.vkResetDescriptorPool(c.device, poolOf(*view.frame), 0);
+    for (const PellucidView& view : views) c.vk.vkResetDescriptorPool(c.device, view.frame->options.descriptorPool, 0);
   uint32_t barriers = 0;
   for (const PellucidView& view : views) barriers = std::max(barriers, barriersOf(*view.plan));
   for (uint32_t segment = 0; segment <= barriers; ++segment) {

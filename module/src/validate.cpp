@@ -7,7 +7,6 @@
 #include "domains.h"
 #include "minimum_dot.h"
 #include "planner.h"
-#include "struct_size.h"
 #include "transmittance.h"
 
 namespace pellucid {
@@ -159,16 +158,6 @@ void checkFields(const Inputs& inputs, Findings& out) {
 
 void checkMaterials(const Inputs& inputs, Findings& out) {
   const PellucidFrame& f = inputs.frame;
-  // All before any is read, as the first one's size says where the others are.
-  const uint32_t size = f.materials->structSize;
-  const auto* bytes = reinterpret_cast<const unsigned char*>(f.materials);
-  for (uint32_t i = 0; i < f.materialCount; ++i) {
-    const auto* m = reinterpret_cast<const PellucidMaterial*>(bytes + static_cast<size_t>(i) * size);
-    if (m->structSize == size && canReadStruct(m, kLeastMaterial)) continue;
-    return out.error(Field("materials[", i, "].structSize"), "is ", m->structSize, "; this library reads ",
-                     kLeastMaterial, " to ", sizeof(PellucidMaterial),
-                     " bytes, and more if they are 0, and all materials have one size");
-  }
   for (uint32_t i = 0; i < f.materialCount; ++i) {
     const PellucidMaterial material = inputs.material(i);
     checkMaterial(material, i, out);

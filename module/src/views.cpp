@@ -1,7 +1,6 @@
 // Views before they are recorded: what is refused.
 #include "context.h"
 #include "plan.h"
-#include "struct_size.h"
 
 namespace pellucid {
 namespace {
@@ -149,11 +148,10 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
   else if (view.constants->offset % kSlotBytes != 0 || !view.constants->buffer)
     out.error("constants", "needs a buffer and an offset that is a multiple of 256");
   if (!out.ok()) return;
-  if (!checkStructSize(view.frame, kLeastFrame, "structSize", "pellucidInitFrame", out)) return;
   checkContext(c, *view.plan, out);
   if (out.ok()) checkBound(c, *view.plan, *view.frame, out);
   if (!out.ok()) return;
-  if (c.desc.options.descriptorPools && !poolOf(*view.frame))
+  if (c.desc.options.descriptorPools && !view.frame->options.descriptorPool)
     out.error("options.descriptorPool", "is NULL, but PellucidContextOptions::descriptorPools is 1");
   else if (view.constants->size < view.plan->constantsSize)
     out.fail(PELLUCID_ERROR_BUFFER_TOO_SMALL, "constants.size", "is ", view.constants->size,
@@ -161,7 +159,7 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
   for (uint32_t other = 0; other < index && out.ok(); ++other) {
     checkImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
-    if (c.desc.options.descriptorPools && poolOf(*views[other].frame) == poolOf(*view.frame))
+    if (c.desc.options.descriptorPools && views[other].frame->options.descriptorPool == view.frame->options.descriptorPool)
       out.error("options.descriptorPool", "is views[", other, "].options.descriptorPool, too");
   }
 }

@@ -67,7 +67,6 @@ struct Example {
   PellucidFrame frame;
 
   Example() {
-    material.structSize = sizeof material;
     material.gaussianCount = 1;
     for (int c = 0; c < 3; ++c) {
       material.transmittance[c][0] = 1;

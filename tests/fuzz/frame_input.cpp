@@ -119,13 +119,6 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
         edit(std::span(images_), e[1], word, value);
     }
   }
-  // A struct is as long as it says, or shorter.
-  const auto shorten = [](auto& object) {
-    object.structSize = std::min<uint32_t>(object.structSize, sizeof object);
-  };
-  shorten(edited);
-  shorten(thesis);
-  for (PellucidMaterial& material : materials_) shorten(material);
   frame = edited;
   bound(frame.options.outputFormat);
   for (PellucidImage* image :

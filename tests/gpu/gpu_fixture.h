@@ -104,7 +104,6 @@ inline double relativeRmse(const Image& a, const Image& b, const std::vector<std
 // T = e^{-d / 2 mm} in red, e^{-d} in green, 0.7 e^{-2 d} + 0.3 e^{-d / 4 mm} in blue.
 inline PellucidMaterial testMaterial() {
   PellucidMaterial m{};
-  m.structSize = sizeof m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   const float t[3][5] = {{1, 0.5f, 0, 0, 0}, {1, 1, 0, 0, 0}, {0.7f, 2, 0.3f, 0.25f, 0}};
   std::memcpy(m.transmittance, t, sizeof t);

@@ -98,7 +98,6 @@ struct View {
 
 PellucidMaterial material() {
   PellucidMaterial m{};
-  m.structSize = sizeof m;
   for (int c = 0; c < 3; ++c) {
     m.transmittance[c][0] = 1;
     m.transmittance[c][1] = 0.1f;

@@ -208,7 +208,6 @@ void tableSizeOf(Frame& f, uint32_t value) {
 }
 
 const std::vector<IntegerRule> kIntegerRules = {
-    RULE(PellucidFrame, structSize, "structSize", 0, 4, 0xFFFFFFFF),
     RULE(PellucidFrame, options.features, "options.features", 4, 7, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, imageExtent[1], "imageExtent", 0, 65537, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, options.renderRect[0], "options.renderRect", 1, 65537, 0x80000000, 0xFFFFFFFF),
@@ -253,8 +252,6 @@ const std::vector<IntegerRule> kIntegerRules = {
      tableSizeOf<PELLUCID_ANGLE_MINIMUM_DOT_SPHERE>,
      {0, 2, 17, 65536, 0x80000001, 0xFFFFFFFF}},
     RULE(PellucidThesisOptions, materialMarkBit, "thesis.materialMarkBit", 1, 3, 192, 0xFFFFFFFF),
-    RULE(PellucidThesisOptions, structSize, "thesis.structSize", 0, 4, 0xFFFFFFFF),
-    RULE(PellucidMaterial, structSize, "materials[0].structSize", 0, 4, 0xFFFFFFFF),
     RULE(PellucidLight, firstShadowMap, "lights[0].shadowMapCount", 1, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidLight, shadowMapCount, "lights[0].shadowMapCount", 2, PELLUCID_MAX_LIGHT_SHADOW_MAPS + 1,
          0x80000000, 0xFFFFFFFF),

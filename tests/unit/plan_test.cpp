@@ -36,7 +36,6 @@ std::ptrdiff_t countOf(const PellucidPlan& plan, const std::string& name) {
 
 PellucidMaterial paper() {
   PellucidMaterial m{};
-  m.structSize = sizeof m;
   m.thinWalled = 1;
   for (int c = 0; c < 3; ++c) {
     m.reflectance[c] = 0.5f;

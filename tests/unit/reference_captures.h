@@ -118,7 +118,6 @@ inline Capture obliqueBall(bool sheared, double* cosines,
 // T(d) = e^{-2d}, rho = 1/2, profile Burley of distance d in every channel.
 inline PellucidMaterial burleyMaterial(double d) {
   PellucidMaterial m{};
-  m.structSize = sizeof m;
   m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
   for (int c = 0; c < 3; ++c) {
     m.transmittance[c][0] = 1;

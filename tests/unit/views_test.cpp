@@ -239,8 +239,6 @@ const Refusal kRefusals[] = {
      "views[1].constants.size is 256; the plan needs", PELLUCID_ERROR_BUFFER_TOO_SMALL},
     {"PlanOfTheOtherView", [](View&, View& b, auto&) { b.f.frame.shadowImageCount = 0; },
      "views[1].shadowImages[0] has no view, but the plan binds it"},
-    {"FrameOfNoVersion", [](View&, View& b, auto&) { b.f.frame.structSize = 8; }, "views[1].structSize is 8",
-     PELLUCID_ERROR_VERSION},
     {"NoView", [](View&, View& b, auto&) { b.f.frame.material = {}; }, "views[1].material has no view"}};
 
 TEST_F(Views, RefusalsNameTheViewAndRecordNothing) {

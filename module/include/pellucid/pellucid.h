@@ -19,9 +19,7 @@
  * - colors: linear, scene-referred, R, G, B;
  * - ranges: colors and intensities 0..1e15, other scene values -1e15..1e15;
  * - defaults: 0 where a comment says "0 (default)". pellucidInit* writes all defaults;
- * - errors: a function that returns PellucidResult can return the errors in its comment. Codes stand without PELLUCID_ERROR_;
- * - sizes: a struct with a `structSize` may grow at its end. Missing fields of an older struct have their defaults. Further bytes of
- *   a newer struct must be 0, and the struct has at most 4096 bytes.
+ * - errors: a function that returns PellucidResult can return the errors in its comment. Codes stand without PELLUCID_ERROR_.
  */
 #ifndef PELLUCID_H
 #define PELLUCID_H
@@ -37,7 +35,7 @@ extern "C" {
 /* Version of the release. */
 #define PELLUCID_VERSION "0.3.0"
 /* Version of the headers. The library refuses headers of another version. */
-#define PELLUCID_HEADER_VERSION 6u
+#define PELLUCID_HEADER_VERSION 7u
 
 /* ---- Context: the pipelines of one device ----------------------------------------------------- */
 
@@ -46,8 +44,12 @@ typedef struct PellucidContext PellucidContext;
 
 /* Description of a context. */
 typedef struct PellucidContextDesc {
-  /* sizeof(PellucidContextDesc) and PELLUCID_HEADER_VERSION. pellucidInitContextDesc writes both. */
-  uint32_t structSize, headerVersion;
+  /* PELLUCID_HEADER_VERSION, which pellucidInitContextDesc writes. This field and the next two keep their places in all versions. */
+  uint32_t headerVersion;
+  /* Optional. It is called with each error of the context and of recordings. */
+  PellucidMessageFn message;
+  /* First argument of `message`. */
+  void* messageUser;
   /* VkApplicationInfo::apiVersion of the instance, at least VK_API_VERSION_1_1; default 1.1. */
   uint32_t apiVersion;
   /* Required. */
@@ -59,18 +61,12 @@ typedef struct PellucidContextDesc {
   VkDevice device;
   /* Required. The module gets all Vulkan functions from this function. */
   PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  /* Optional. It is called with each error of the context and of recordings. */
-  PellucidMessageFn message;
-  /* First argument of `message`. */
-  void* messageUser;
   /* pellucidInitContextDesc writes the defaults. */
   PellucidContextOptions options;
 } PellucidContextDesc;
 
-/* Writes the defaults into a description of structSize bytes. */
-PELLUCID_API void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t structSize);
 /* Writes the defaults. */
-static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
+PELLUCID_API void pellucidInitContextDesc(PellucidContextDesc* desc);
 
 /* Checks the device's limits and makes pipelines. Any thread may use the context. On failure *context is NULL.
  * Errors: VERSION, INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
@@ -155,8 +151,6 @@ enum { PELLUCID_MAX_TRANSIENTS = 8 };
 
 /* Input and output of one recording. */
 typedef struct PellucidFrame {
-  /* sizeof(PellucidFrame). pellucidInitFrame writes it. */
-  uint32_t structSize;
   /* Width and height in pixels of every screen-sized image, 1..65536. */
   uint32_t imageExtent[2];
   /* Meters of a scene unit, 1e-9..1e9; default 1. */
@@ -215,13 +209,11 @@ typedef struct PellucidFrame {
   PellucidFrameOptions options;
 } PellucidFrame;
 
-/* Writes the defaults into a frame of structSize bytes. */
-PELLUCID_API void pellucidInitFrameSized(PellucidFrame* frame, size_t structSize);
 /* Writes the defaults. */
-static inline void pellucidInitFrame(PellucidFrame* f) { pellucidInitFrameSized(f, sizeof *f); }
+PELLUCID_API void pellucidInitFrame(PellucidFrame* frame);
 
 /* Checks every convention and the range of each field (docs/materials.md). Calls `fn` (optional) with each warning and error. Warnings
- * alone return PELLUCID_OK. Errors: INVALID_ARGUMENT, VERSION; CAPACITY for more shadow images than a plan can bind. */
+ * alone return PELLUCID_OK. Errors: INVALID_ARGUMENT; CAPACITY for more shadow images than a plan can bind. */
 PELLUCID_API PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* An image that the caller creates: 2D, one mip, usage SAMPLED | STORAGE. A transient holds nothing between frames. Its memory may serve
@@ -241,7 +233,7 @@ typedef struct PellucidImageNeed {
 
 /* Lists the transients of this frame in order, then with reuse the persistent image. The images serve every render rect. Writes at most
  * *count needs, and sets *count to the number of all. `needs` may be NULL. Transients need no views yet. Optional inputs count as given
- * if they have views. Errors: INVALID_ARGUMENT, VERSION, CAPACITY. */
+ * if they have views. Errors: INVALID_ARGUMENT, CAPACITY. */
 PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* ---- Plan and recording -------------------------------------------------------------------------- */
@@ -251,7 +243,7 @@ typedef struct PellucidPlan PellucidPlan;
 
 /* Plans a frame. The function is pure: the same frame and previous plan give the same plan, without a device or allocation. The plan
  * keeps no pointer to the frame. Optional images count as given if they have views. `previous`: the plan of the last recorded frame,
- * for options.reuse alone, or NULL. Errors: INVALID_ARGUMENT, VERSION; CAPACITY for more dispatches than a plan holds. */
+ * for options.reuse alone, or NULL. Errors: INVALID_ARGUMENT; CAPACITY for more dispatches than a plan holds. */
 PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
 /* The most bytes that a slice needs for these numbers of materials, lights and shadow maps. A map of two lights counts twice. */

@@ -29,7 +29,7 @@ typedef int32_t PellucidResult;
 enum {
   PELLUCID_OK = 0,                      /* the call did all its work */
   PELLUCID_ERROR_INVALID_ARGUMENT = -1, /* a field is wrong; the message names it */
-  PELLUCID_ERROR_VERSION = -2,          /* the library cannot take this structSize or headerVersion */
+  PELLUCID_ERROR_VERSION = -2,          /* headers of another version made the description of the context */
   PELLUCID_ERROR_MISSING_FEATURE = -3,  /* the device lacks a function, feature or limit; the message names it */
   PELLUCID_ERROR_OUT_OF_MEMORY = -4,    /* host or device memory is exhausted */
   PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */

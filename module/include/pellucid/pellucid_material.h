@@ -47,8 +47,6 @@ typedef enum PellucidTransmittanceModel {
 /* The constants of a material. pellucidCompileMaterial makes them from a description, or the caller fills the fields. Lengths are at most
  * 1e9 mm. */
 typedef struct PellucidMaterial {
-  /* sizeof(PellucidMaterial), the same in all materials of a frame. */
-  uint32_t structSize;
   /* PellucidTransmittanceModel. */
   uint32_t transmittanceModel;
   /* Parameters of the model: rates in 1/mm, lengths in mm, amplitudes without unit. */
@@ -63,7 +61,6 @@ typedef struct PellucidMaterial {
   float gaussianWeight[3][PELLUCID_MAX_GAUSSIANS];
   /* mm, > 0: the distance from the entry of light within which 99.9 % of the diffused light leaves. */
   float radius[3];
-  /* ---- fields that may be missing ---- */
   /* mm, >= 0: d of Christensen & Burley 2015 eq. 3. The diffusion takes this profile in place of the Gaussians, which fit it. 0 (default):
    * the Gaussians. */
   float burleyDistance[3];
@@ -102,8 +99,6 @@ enum { PELLUCID_MAX_WAVELENGTHS = 1024 };
 
 /* Description of a material. pellucidInitMaterialDesc writes the defaults, which are 0 where a comment has none. */
 typedef struct PellucidMaterialDesc {
-  /* sizeof(PellucidMaterialDesc). pellucidInitMaterialDesc writes it. */
-  uint32_t structSize;
   /* PellucidMaterialKind. */
   uint32_t kind;
   /* 1..PELLUCID_MAX_GAUSSIANS; default 6, which has an edgeError of 4.5e-4. */
@@ -199,7 +194,7 @@ PELLUCID_API void pellucidInitMaterialDesc(PellucidMaterialDesc* desc);
 
 /* Compiles a material: fills every field of *material and of *report. `report` may be NULL. On failure the function writes neither,
  * and `message` (optional) names field and value. The call takes about 15 ms for RGB coefficients, 50 ms for spectra, and 200 ms for skin
- * by physiology. Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
+ * by physiology. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
 PELLUCID_API PellucidResult pellucidCompileMaterial(const PellucidMaterialDesc* desc, PellucidMaterial* material,
                                                     PellucidMaterialReport* report, PellucidMessageFn message,
                                                     void* messageUser);
@@ -223,7 +218,7 @@ PELLUCID_API PellucidResult pellucidSlabTransport(double scattering, double abso
 
 /* Light of `count` slabs, to which the compiler fits a material's T(d): slabs[3 * i + channel] for thickness[i] in mm, >= 0. BURLEY
  * and GAUSSIANS have their own T(d) for both incidences, and reflectance 0. THIN_WALL has wallTransmittance and wallReflectance at
- * every thickness. `message` is optional. Errors: INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
+ * every thickness. `message` is optional. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY. */
 PELLUCID_API PellucidResult pellucidMaterialSlabs(const PellucidMaterialDesc* desc, uint32_t count,
                                                   const double* thickness, PellucidSlab* slabs, PellucidMessageFn message,
                                                   void* messageUser);
@@ -249,8 +244,6 @@ PELLUCID_API PellucidResult pellucidFindPreset(const char* name, PellucidMateria
 /* The subsurface medium of OpenPBR Surface 1.1 and MaterialX's open_pbr_surface. Names, meanings and defaults are those of OpenPBR.
  * Colors are linear. */
 typedef struct PellucidOpenPbr {
-  /* sizeof(PellucidOpenPbr). pellucidInitOpenPbr writes it. */
-  uint32_t structSize;
   /* The part of the light entering along the normal that comes back out, 0..1; default .8. */
   double subsurfaceColor[3];
   /* > 0; default 1, in the unit of millimetersPerUnit. Radius times scale is the mean free path 1 / (sigma_s + sigma_a). */
@@ -272,7 +265,7 @@ PELLUCID_API void pellucidInitOpenPbr(PellucidOpenPbr* material);
  * single-scattering albedo gives subsurfaceColor behind the smooth boundary of specularIor. The albedo follows from OpenPBR's definition of
  * the color and the transport of this header, to 1e-4 of the color for g = 0. Other g follow by similarity. Other fields of *desc get their
  * defaults. On failure *desc does not change, and `message` (optional) names field and value. The function takes about 20 ms. Errors:
- * INVALID_ARGUMENT, VERSION, OUT_OF_MEMORY. */
+ * INVALID_ARGUMENT, OUT_OF_MEMORY. */
 PELLUCID_API PellucidResult pellucidDescribeOpenPbr(const PellucidOpenPbr* material, PellucidMaterialDesc* desc,
                                                     PellucidMessageFn message, void* messageUser);
 

@@ -32,9 +32,6 @@ typedef enum PellucidAngleModel {
 
 /* Options of Whelan 2009, and their defaults. */
 struct PellucidThesisOptions {
-  /* sizeof(PellucidThesisOptions). pellucidInitThesisOptions writes it. */
-  uint32_t structSize;
-  /* ---- fields that may be missing ---- */
   /* PellucidAngleModel; default NORMAL. */
   uint32_t angleModel;
   /* c0..c3 of POLYNOMIAL, -1e6..1e6; default 0. */
@@ -78,12 +75,8 @@ struct PellucidThesisOptions {
   const float* minimumDotTable;
 };
 
-/* Writes the defaults into a struct of structSize bytes. */
-PELLUCID_API void pellucidInitThesisOptionsSized(PellucidThesisOptions* options, size_t structSize);
 /* Writes the defaults. */
-static inline void pellucidInitThesisOptions(PellucidThesisOptions* options) {
-  pellucidInitThesisOptionsSized(options, sizeof(PellucidThesisOptions));
-}
+PELLUCID_API void pellucidInitThesisOptions(PellucidThesisOptions* options);
 
 #ifdef __cplusplus
 }
