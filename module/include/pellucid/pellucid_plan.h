@@ -157,9 +157,6 @@ PELLUCID_API uint32_t pellucidGetPipelineCount(void);
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                               PellucidShader* shader);
 
-/* The screen-sized images that `features` (PellucidFeatureBits) need, as bits 1 << PellucidResource. */
-PELLUCID_API uint32_t pellucidGetRequiredInputs(uint32_t features);
-
 /* Writes a plan as zero-terminated JSON. *size is the room in `text` in bytes, and becomes the needed bytes with the terminator. With
  * `text` NULL the function only sets *size. Errors: INVALID_ARGUMENT, BUFFER_TOO_SMALL. */
 PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
