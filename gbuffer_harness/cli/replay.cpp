@@ -17,6 +17,7 @@
 #include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "cli/plan_json.h"
 #include "cli/settings.h"
 #include "common/error.h"
 #include "common/parallel.h"

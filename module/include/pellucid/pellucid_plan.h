@@ -1,4 +1,4 @@
-/* Fields of a plan, for engines that record plans themselves, and a plan's JSON.
+/* Fields of a plan, for engines that record plans themselves.
  *
  * A plan is plain data with pointers to static strings alone. A copy of a plan is a valid plan. A plan outlives its
  * frame. pellucid.h includes pellucid_plan.h, because a caller's plan needs a complete type.
@@ -156,10 +156,6 @@ PELLUCID_API uint32_t pellucidGetPipelineCount(void);
  * type. */
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                               PellucidShader* shader);
-
-/* Writes a plan as zero-terminated JSON. *size is the room in `text` in bytes, and becomes the needed bytes with the terminator. With
- * `text` NULL the function only sets *size. Errors: INVALID_ARGUMENT, BUFFER_TOO_SMALL. */
-PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
 
 /* Name of a PellucidResource: "frontDepth", ... or "unknown resource". */
 PELLUCID_API const char* pellucidResourceName(uint32_t resource);
