@@ -24,7 +24,6 @@
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "pellucid/pellucid_statistics.h"
 #include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
@@ -32,7 +31,7 @@
 namespace pellucid::harness {
 namespace {
 
-std::string row(const char* name, const PellucidGroups& groups) {
+std::string row(const char* name, const Groups& groups) {
   char line[128];
   const double part =
       groups.most > 0 ? 100 * static_cast<double>(groups.run) / static_cast<double>(groups.most) : 0;
@@ -48,16 +47,16 @@ std::string heading(const char* first, const char* run) {
   return line;
 }
 
-// Tables for a person: groups of each dispatch, and totals of the frame. `statistics`: of the plan.
-std::string statisticsText(const PellucidPlan& plan, const PellucidStatistics& s) {
+// Tables for a person: groups of each dispatch, and totals of the frame.
+std::string statisticsText(const PellucidPlan& plan, const Statistics& s) {
   std::string text = heading("statistics", "groups run");
-  for (uint32_t i = 0; i < s.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
   text += heading("total", "run");
   if (s.lists) text += row("blocks with material", s.blocks);
   if (s.probes.most > 0) text += row("probe groups", s.probes);
   if (s.entryPoints.most > 0) text += row("entry point groups", s.entryPoints);
   if (!s.lists) text += "no lists of blocks: " + whyNoLists(plan) + "\n";
-  return text + "lights that can contribute: " + std::to_string(s.activeLights) + "\n";
+  return text + "lights that can contribute: " + std::to_string(plan.activeLights) + "\n";
 }
 
 constexpr const char* kSettingsAttribute = "pellucid.settings";

@@ -285,16 +285,6 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
-PellucidStatistics FrameRun::statistics() const {
-  const PellucidConstantsSlice slice = this->slice();
-  PellucidStatistics statistics;
-  pellucidInitStatistics(&statistics);
-  std::string sentences;
-  if (pellucidReadStatistics(plan_.get(), &slice, &statistics, &appendError, &sentences) != PELLUCID_OK)
-    throw InputError(name_, "", sentences);
-  return statistics;
-}
-
 std::vector<std::uint32_t> FrameRun::blockWords() const { return images_->blockWords(); }
 
 Image FrameRun::output() const { return images_->output().download(); }

@@ -5,7 +5,6 @@
  * struct (pellucid_options.h). pellucid_material.h makes materials. Other headers are for further work:
  * - pellucid_plan.h: record a plan yourself. pellucid.h includes it, but most engines need not read it.
  * - pellucid_views.h: record several views at once.
- * - pellucid_statistics.h: read the decisions of the device.
  * - pellucid_thesis.h: options of Whelan 2009.
  *
  * C ABI, Vulkan headers only. The caller owns images, buffers and command buffers. The module creates pipelines and layouts, and

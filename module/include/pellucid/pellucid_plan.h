@@ -60,7 +60,10 @@ typedef struct PellucidDispatch {
   uint32_t groups[3];
   /* Push constants from offset 0 on. */
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
-  /* Bytes from the slice's offset to the VkDispatchIndirectCommand. */
+  /* Bytes from the slice's offset to five 32-bit words. The first three are the VkDispatchIndirectCommand. After the frame, word 4 has
+   * the x of the workgroups that ran, words 1 and 2 have their y and z, and word 0 is 0 again. A host that reads the words needs a barrier
+   * from PELLUCID_STAGES / PELLUCID_WRITES to HOST / HOST_READ. The host reads after the submission's fence and before the next
+   * pellucidWriteConstants into the slice. */
   uint32_t indirectOffset;
   /* Index below pellucidGetPipelineCount(). pellucidPipelineName names it. */
   uint8_t pipeline;
