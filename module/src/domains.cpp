@@ -58,7 +58,6 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
     {FIELD(PellucidFrame, options.backDepthEncoding), 0, PELLUCID_DEPTH_THICKNESS},
     {FIELD(PellucidFrame, options.cameraThickness), 0, 1},
     {FIELD(PellucidFrame, options.debugView), 0, PELLUCID_DEBUG_IRRADIANCE},
-    {FIELD(PellucidFrame, options.separateOutput), 0, 1},
     {FIELD(PellucidFrame, options.indirectDispatches), 0, 1},
     {FIELD(PellucidFrame, options.materialShift), 0, 31},
     {FIELD(PellucidFrame, options.addToOutput), 0, 1},

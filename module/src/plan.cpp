@@ -98,6 +98,7 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   state.outputFormat = f.frame.options.outputFormat;
   state.lightTables = f.frame.options.lightTableCount;
   state.options = optionsOf(f);
+  state.separate = f.separate();
   state.layeredMap = layeredMap(f.frame);
   if (state.layeredMap > 0) state.layer = f.frame.shadowMaps[state.layeredMap - 1].options.layer;
   std::memcpy(plan->state, &state, sizeof state);

@@ -226,7 +226,7 @@ TEST(Plan, DiffusionAloneCopiesTheIrradianceUnlessTheOutputIsSeparate) {
     Names passes[2];
     uint32_t needs[2] = {};
     for (const uint32_t separate : {0u, 1u}) {
-      f.frame.options.separateOutput = separate;
+      f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{1 + separate});
       const PellucidPlan plan = f.plan();
       passes[separate] = names(plan);
       EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &needs[separate], nullptr), PELLUCID_OK);

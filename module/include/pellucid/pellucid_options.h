@@ -157,8 +157,6 @@ typedef struct PellucidFrameOptions {
    * later pass (docs/integration.md). The sum is clamped to 0..65504, NaN counts as 0, and alpha stays. The output then has usage
    * SAMPLED, too, and is not the irradiance image. Debug views still replace the output. */
   uint32_t addToOutput;
-  /* 1: output and irradiance image share no memory. Diffusion without lights then saves a copy. 0 (default): they may share memory. */
-  uint32_t separateOutput;
 
   /* ---- the gather: light of maps that comes through ---- */
 
