@@ -3,7 +3,6 @@
 
 #include "capture/material.h"
 #include "capture/read.h"
-#include "cli/capture_checks.h"
 #include "cli/commands.h"
 #include "cli/plan_json.h"
 #include "cli/settings.h"
@@ -25,7 +24,6 @@ void addPlanCommand(const Command& app) {
     FrameData data;
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     const ReplaySettings settings = options->settings.parse();
-    requireNearestDistance(capture, materials, settings);
     makeFrame(capture, materials, settings, data);
     PellucidPlan plan;
     requireOk(pellucidBuildPlan(&data.frame, nullptr, &plan), data.frame, capture.name);

@@ -164,7 +164,6 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   warn(capture.warnings);
   warn(coarseTables(capture));
   warn(thinBodies(capture, materials));
-  requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
   Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
@@ -245,7 +244,6 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     if (!std::filesystem::exists(input(frame))) return counted([&] { missing.push_back(frame); });
     const Capture capture = readCapture(input(frame));
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-    requireNearestDistance(capture, materials, settings);
     counted([&] {
       warnings.insert(capture.warnings.begin(), capture.warnings.end());
       if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())

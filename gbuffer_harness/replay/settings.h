@@ -40,7 +40,6 @@ struct ReplaySettings {
   float preExposure = 1;
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
-  float nearestDistance = 0;
   std::array<float, 4> anchor = {0, 0, 0, 0};
   bool aliasOutput = false;  // see inPlace()
   bool indirectDispatches = true;

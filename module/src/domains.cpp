@@ -47,7 +47,6 @@ constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, clipFromView), -kLongest, kLongest},
     {FIELD(PellucidFrame, viewFromWorld), -kLongest, kLongest},
     {FIELD(PellucidFrame, options.coherenceThreshold), 0, 2},
-    {FIELD(PellucidFrame, options.nearestDistance), 0, kLongest},
     {FIELD(PellucidFrame, options.anchor), -kLongest, kLongest},
     {FIELD(PellucidFrame, options.motionScale), -1e6F, 1e6F},
     {FIELD(PellucidFrame, preExposure), 1e-9F, 1e9F},

@@ -79,7 +79,6 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
-  if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.largestRadius);
   Skips skips = skipsOf(f);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);

@@ -65,7 +65,6 @@ constexpr Way kWays[] = {
        s.materialShift = 4;
        s.materialMask = 0xFF0;
      }},
-    {"a distance that is known", [](ReplaySettings& s) { s.nearestDistance = 10; }},
 };
 
 // The transients hold NaN before each recording, so that a texel that no group wrote shows.

@@ -72,7 +72,6 @@ struct Unusual : Frame {
     thesis.transmittanceFilter[1] = 0.25f;
     frame.options.gatherSamples = 0;
     frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
-    frame.options.nearestDistance = 13;
     frame.options.indirectDispatches = 1;
     frame.options.materialShift = 1;
     frame.options.materialMask = 0x1FE;

@@ -103,8 +103,6 @@ struct PellucidPlan {
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
   /* skipCount skips. */
   PellucidSkip skips[PELLUCID_MAX_SKIPS];
-  /* Largest radius of all materials and channels, in pixels at options.nearestDistance. 0: not known, or no material diffuses. */
-  float largestRadius;
   /* Samples of each probe. 0: lights with a shadow map have one thickness a pixel. */
   uint32_t gatherSamples;
   /* Age of options.history in frames. ALTERNATE, COHERENCE: frames since a frame computed the light that comes through; 0: this frame
