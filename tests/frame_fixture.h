@@ -5,6 +5,7 @@
 
 #include <set>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "pellucid/pellucid_thesis.h"
@@ -135,6 +136,18 @@ inline std::vector<std::string> names(const PellucidPlan& plan) {
   std::vector<std::string> result;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) result.emplace_back(plan.dispatches[i].name);
   return result;
+}
+
+// All that a plan says, for comparisons. Names are static strings, so their addresses stand for them.
+inline std::string bytesOf(const PellucidPlan& plan) {
+  static_assert(std::has_unique_object_representations_v<PellucidDispatch>, "padding may differ");
+  std::string all(reinterpret_cast<const char*>(plan.dispatches), plan.dispatchCount * sizeof(PellucidDispatch));
+  all.append(reinterpret_cast<const char*>(plan.shadowImages), sizeof plan.shadowImages);
+  for (uint32_t i = 0; i < plan.skipCount; ++i)
+    all += plan.skips[i].what + std::string(plan.skips[i].reason) + std::to_string(plan.skips[i].count);
+  for (const uint32_t number : {plan.activeLights, plan.gatherSamples, plan.historyAge})
+    all += std::to_string(number) + " ";
+  return all + std::to_string(plan.constantsSize);
 }
 
 // How many of this the plan skips.

@@ -249,6 +249,7 @@ struct KernelConstants {
 // Blocks of an image that goes by lists, at most. Counters of two blocks have a word, see compute/diffusion/list_blocks.glsl.
 #define PELLUCID_LISTED_BLOCKS 32768
 
+// As PellucidDispatch::indirectOffset documents for callers.
 struct ListCommand {
   uvec4 groups; // x: groups so far; y, z: of the pass; w: of lists of all groups: how many
   uvec4 ran;    // x: groups of the last run

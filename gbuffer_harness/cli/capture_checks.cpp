@@ -7,12 +7,10 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "capture/material.h"
 #include "common/error.h"
 #include "metrics/masked_image.h"
-#include "metrics/surface.h"
 #include "reference/camera.h"
 
 namespace pellucid::harness {
@@ -127,31 +125,6 @@ std::optional<std::array<double, 3>> transportMeanFreePath(const MaterialSource&
 }
 
 }  // namespace
-
-void requireNearestDistance(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                            const ReplaySettings& settings) {
-  if (!(settings.nearestDistance > 0) || !(settings.features & PELLUCID_FEATURE_DIFFUSION)) return;
-  const auto diffuses = [&](std::uint32_t value) {
-    const std::uint32_t id = value & ~settings.translucency.materialMarkBit;
-    return id > 0 && id <= materials.size() && materials[id - 1].gaussianCount > 0;
-  };
-  const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
-  if (camera.orthographic()) return;  // radii in pixels are the same at any distance
-  std::optional<double> nearest;
-  int nearestX = 0, nearestY = 0;
-  forEachSurface(capture, camera, [&](int x, int y, double depth) {
-    if (!diffuses(capture.material[pixelIndex(capture.frontDepth.image, x, y)])) return;
-    if (nearest && depth >= *nearest) return;
-    nearest = depth;
-    nearestX = x;
-    nearestY = y;
-  });
-  if (!nearest || *nearest >= static_cast<double>(settings.nearestDistance) * (1 - 1e-4)) return;
-  std::ostringstream sentence;
-  sentence << "is " << settings.nearestDistance << ", but at pixel " << nearestX << ", " << nearestY
-           << " a surface that diffuses lies at " << *nearest;
-  throw InputError(capture.name, "nearest-distance", sentence.str());
-}
 
 std::vector<std::string> thinBodies(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
   std::vector<std::string> sentences;

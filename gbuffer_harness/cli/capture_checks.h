@@ -5,15 +5,9 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "replay/frame.h"
+#include "pellucid/pellucid.h"
 
 namespace pellucid::harness {
-
-// A plan leaves out the levels of the diffusion that radii at settings.nearestDistance do not reach: nothing
-// that diffuses may lie nearer by more than the rounding of depths, 1e-4 of it. Throws InputError, naming the
-// nearest pixel. A setting of 0 promises nothing, and an orthographic camera needs no promise.
-void requireNearestDistance(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                            const ReplaySettings& settings);
 
 // A sentence for each material whose transport mean free path, 1 / (reduced scattering + absorption), is more
 // than a quarter of a size. It is that of the material's largest piece that the camera sees whole: the middle

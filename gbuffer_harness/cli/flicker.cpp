@@ -10,7 +10,6 @@
 
 #include "capture/material.h"
 #include "capture/read.h"
-#include "cli/capture_checks.h"
 #include "cli/capture_options.h"
 #include "cli/command.h"
 #include "cli/commands.h"
@@ -133,7 +132,6 @@ std::vector<Row> measure(const Options& options, const std::vector<int>& pixels,
   int rim = 0;
   for (const int k : pixels) rim = std::max(rim, std::abs(k));
   const std::vector<PellucidMaterial> materials = compileMaterials(frames.still);
-  requireNearestDistance(frames.still, materials, settings);
   const Capture base = movedCapture(frames.still, 0, 0, rim);
   const Mask mask = comparisonMask(base.material, base.irradiance, Subset::All);
   if (std::find(mask.begin(), mask.end(), 1) == mask.end())

@@ -1,12 +1,10 @@
 // `pellucid plan`: the dispatch plan of a capture, without a device.
 #include <cstdio>
 
-#include <nlohmann/json.hpp>
-
 #include "capture/material.h"
 #include "capture/read.h"
-#include "cli/capture_checks.h"
 #include "cli/commands.h"
+#include "cli/plan_json.h"
 #include "cli/settings.h"
 
 namespace pellucid::harness {
@@ -26,11 +24,10 @@ void addPlanCommand(const Command& app) {
     FrameData data;
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     const ReplaySettings settings = options->settings.parse();
-    requireNearestDistance(capture, materials, settings);
     makeFrame(capture, materials, settings, data);
     PellucidPlan plan;
     requireOk(pellucidBuildPlan(&data.frame, nullptr, &plan), data.frame, capture.name);
-    std::printf("%s\n", nlohmann::json::parse(planJson(plan)).dump(2).c_str());
+    std::printf("%s\n", planJson(plan, 2).c_str());
   });
 }
 

@@ -17,13 +17,13 @@
 #include "cli/capture_options.h"
 #include "cli/commands.h"
 #include "cli/frames.h"
+#include "cli/plan_json.h"
 #include "cli/settings.h"
 #include "common/error.h"
 #include "common/parallel.h"
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "pellucid/pellucid_statistics.h"
 #include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
@@ -31,7 +31,7 @@
 namespace pellucid::harness {
 namespace {
 
-std::string row(const char* name, const PellucidGroups& groups) {
+std::string row(const char* name, const Groups& groups) {
   char line[128];
   const double part =
       groups.most > 0 ? 100 * static_cast<double>(groups.run) / static_cast<double>(groups.most) : 0;
@@ -47,16 +47,16 @@ std::string heading(const char* first, const char* run) {
   return line;
 }
 
-// Tables for a person: groups of each dispatch, and totals of the frame. `statistics`: of the plan.
-std::string statisticsText(const PellucidPlan& plan, const PellucidStatistics& s) {
+// Tables for a person: groups of each dispatch, and totals of the frame.
+std::string statisticsText(const PellucidPlan& plan, const Statistics& s) {
   std::string text = heading("statistics", "groups run");
-  for (uint32_t i = 0; i < s.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
+  for (uint32_t i = 0; i < plan.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
   text += heading("total", "run");
   if (s.lists) text += row("blocks with material", s.blocks);
   if (s.probes.most > 0) text += row("probe groups", s.probes);
   if (s.entryPoints.most > 0) text += row("entry point groups", s.entryPoints);
   if (!s.lists) text += "no lists of blocks: " + whyNoLists(plan) + "\n";
-  return text + "lights that can contribute: " + std::to_string(s.activeLights) + "\n";
+  return text + "lights that can contribute: " + std::to_string(plan.activeLights) + "\n";
 }
 
 constexpr const char* kSettingsAttribute = "pellucid.settings";
@@ -164,7 +164,6 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   warn(capture.warnings);
   warn(coarseTables(capture));
   warn(thinBodies(capture, materials));
-  requireNearestDistance(capture, materials, settings);
   Device device({options.device, false});
   Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
@@ -245,7 +244,6 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     if (!std::filesystem::exists(input(frame))) return counted([&] { missing.push_back(frame); });
     const Capture capture = readCapture(input(frame));
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-    requireNearestDistance(capture, materials, settings);
     counted([&] {
       warnings.insert(capture.warnings.begin(), capture.warnings.end());
       if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())

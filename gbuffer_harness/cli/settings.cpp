@@ -126,13 +126,4 @@ void requireExr(const std::string& option, const std::filesystem::path& path) {
                      extension);
 }
 
-std::string planJson(const PellucidPlan& plan) {
-  size_t size = 0;
-  pellucidPlanToJson(&plan, nullptr, &size);
-  std::string text(size, '\0');
-  pellucidPlanToJson(&plan, text.data(), &size);
-  text.pop_back();  // the terminator
-  return text;
-}
-
 }  // namespace pellucid::harness

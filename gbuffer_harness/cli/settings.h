@@ -53,6 +53,4 @@ std::string extensionOf(const std::filesystem::path& path);
 // that says it is something else.
 void requireExr(const std::string& option, const std::filesystem::path& path);
 
-std::string planJson(const PellucidPlan& plan);
-
 }  // namespace pellucid::harness

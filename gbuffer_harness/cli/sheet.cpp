@@ -8,7 +8,6 @@
 #include "capture/exr.h"
 #include "capture/material.h"
 #include "capture/read.h"
-#include "cli/capture_checks.h"
 #include "cli/commands.h"
 #include "cli/numbers.h"
 #include "cli/settings.h"
@@ -106,7 +105,6 @@ std::deque<Picture> replaySweeps(const Options& options, const std::vector<Sweep
     }
     const ReplaySettings parsed = settings.parse();
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-    requireNearestDistance(capture, materials, parsed);
     picture.image = rgb(replayer.run(capture, materials, parsed).output);
     progress.advance();
   }

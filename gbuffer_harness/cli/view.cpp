@@ -86,8 +86,6 @@ std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, c
 
 ReplaySettings parsed(const SettingsOptions& options) {
   const ReplaySettings settings = options.parse();
-  if (settings.nearestDistance > 0)
-    throw UsageError("--set nearest-distance: promises the distance of a camera that can move here");
   if (settings.reuse == PELLUCID_REUSE_ACCUMULATE)
     throw UsageError("--set reuse=accumulate: needs motion vectors, which the viewer does not draw");
   return settings;

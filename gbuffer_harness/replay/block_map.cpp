@@ -12,7 +12,7 @@
 namespace pellucid::harness {
 namespace {
 
-constexpr int kBlock = PELLUCID_STATISTICS_BLOCK;
+constexpr int kBlock = PELLUCID_BLOCK;
 
 // Words of a block, as compute/frame/blocks.glsl has them. The first two have bits of cells with material.
 // The last one is 1 if the block or a block beside it has material.

@@ -116,7 +116,7 @@ private:
   std::uintptr_t count_ = 0;
 };
 
-void fillPlaceholders(const FrameShape& shape, bool hidden, FrameData& data) {
+void fillPlaceholders(const FrameShape& shape, bool hidden, bool inPlace, FrameData& data) {
   PellucidFrame& f = data.frame;
   Placeholders next;
   for (PellucidImage& map : data.shadowImages) map = next();
@@ -127,7 +127,7 @@ void fillPlaceholders(const FrameShape& shape, bool hidden, FrameData& data) {
   if (shape.albedo) f.albedo = next();
   f.material = next();
   if (f.options.reuse == PELLUCID_REUSE_ACCUMULATE) f.motion = next();
-  f.output = f.options.separateOutput ? next() : f.irradiance;
+  f.output = inPlace ? f.irradiance : next();
   PellucidImageNeed needs[kMaxImageNeeds];
   uint32_t count = kMaxImageNeeds;
   // Where the frame is wrong there are none, and validation says what is.
@@ -236,13 +236,12 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
       for (const double channel : coefficient) data.ambient.push_back(static_cast<float>(channel));
     f.options.ambient = data.ambient.data();
   }
-  f.options.separateOutput = !settings.aliasOutput || settings.debugView != PELLUCID_DEBUG_NONE;
   f.options.materialShift = settings.materialShift;
   f.options.materialMask = settings.materialMask;
   f.options.addToOutput = settings.addToOutput;
   f.preExposure = preExposureOf(settings);
   f.options.debugView = settings.debugView;
-  fillPlaceholders(shape, ambient && shape.hiddenIrradiance, data);
+  fillPlaceholders(shape, ambient && shape.hiddenIrradiance, settings.inPlace(), data);
 }
 
 void appendError(void* user, PellucidSeverity severity, const char* field, const char* message) {

@@ -37,7 +37,7 @@ public:
     if (!shared) inputs_ = std::make_shared<InputImages>(device, capture, settings);
     inputs_->bind(data);
     PellucidFrame& f = data.frame;
-    outputIsIrradiance_ = f.options.separateOutput == 0;
+    outputIsIrradiance_ = settings.inPlace();
     if (outputIsIrradiance_) {
       f.output = f.irradiance;
       output_ = &inputs_->irradiance();
@@ -207,7 +207,7 @@ FrameRun::FrameRun(Device& device, const Context& context, const Capture& captur
                    std::shared_ptr<const InputImages> inputs, const FrameRun* previous, ImagePool* pool)
     : device_(device), context_(context), name_(capture.name), plan_(std::make_unique<PellucidPlan>()) {
   makeFrame(capture, inputs->shape(), materials, settings, data_);
-  if (!data_.frame.options.separateOutput)
+  if (settings.inPlace())
     throw InputError(name_, "aliasOutput", "the inputs are other frames', too");
   images_ = std::make_unique<Images>(device, capture, settings, data_, std::move(inputs),
                                      previous ? previous->images_.get() : nullptr, pool);
@@ -284,16 +284,6 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
 }
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
-
-PellucidStatistics FrameRun::statistics() const {
-  const PellucidConstantsSlice slice = this->slice();
-  PellucidStatistics statistics;
-  pellucidInitStatistics(&statistics);
-  std::string sentences;
-  if (pellucidReadStatistics(plan_.get(), &slice, &statistics, &appendError, &sentences) != PELLUCID_OK)
-    throw InputError(name_, "", sentences);
-  return statistics;
-}
 
 std::vector<std::uint32_t> FrameRun::blockWords() const { return images_->blockWords(); }
 

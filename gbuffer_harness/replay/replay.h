@@ -12,9 +12,9 @@
 #include "common/dispatch_time.h"
 #include "common/owned.h"
 #include "common/pool.h"
-#include "pellucid/pellucid_statistics.h"
 #include "replay/frame.h"
 #include "replay/inputs.h"
+#include "replay/statistics.h"
 
 namespace pellucid::harness {
 
@@ -85,8 +85,8 @@ public:
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
   const std::string& name() const { return name_; }  // of the capture
-  // The device's decisions in the last recording, which is finished.
-  PellucidStatistics statistics() const;
+  // Of the last recording, which is finished.
+  Statistics statistics() const { return readStatistics(*plan_, constants()); }
   // The words of that recording's blocks (compute/frame/blocks.glsl); none in plans without lists.
   std::vector<std::uint32_t> blockWords() const;
 
@@ -142,7 +142,7 @@ struct ReplayResult {
   Image output;  // as FrameRun::output; divided by preExposure where that was chosen
   float preExposure = 1;
   PellucidPlan plan;
-  PellucidStatistics statistics;    // of the plan
+  Statistics statistics;
   std::vector<DispatchTime> times;  // one per dispatch; none without timed frames
 };
 

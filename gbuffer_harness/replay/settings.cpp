@@ -272,10 +272,6 @@ std::vector<Setting> makeTable() {
           .range(0, 0.1f)
           .where([](const auto& s) { return s.reuse == PELLUCID_REUSE_COHERENCE; })
           .frame(OPTION(coherenceThreshold)),
-      real("nearest-distance",
-           "of what diffuses from the camera's plane, scene units; 0 (default): not known",
-           FIELD(nearestDistance))
-          .frame(OPTION(nearestDistance)),
       real("anchor",
            "x,y,z,1: point that cells and patterns of samples follow on the screen, world; w 0 (default): none",
            FIELD(anchor))

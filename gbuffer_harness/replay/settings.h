@@ -40,11 +40,13 @@ struct ReplaySettings {
   float preExposure = 1;
   PellucidReuse reuse = PELLUCID_REUSE_NONE;
   float coherenceThreshold = 0.005f;
-  float nearestDistance = 0;
   std::array<float, 4> anchor = {0, 0, 0, 0};
-  bool aliasOutput = false;  // output is the irradiance image; ignored for debug views
+  bool aliasOutput = false;  // see inPlace()
   bool indirectDispatches = true;
   std::array<uint32_t, 4> renderRect = {0, 0, 0, 0};  // width 0: everything
+
+  // The output is the irradiance image, which debug views never replace.
+  bool inPlace() const { return aliasOutput && debugView == PELLUCID_DEBUG_NONE; }
 };
 
 // Whelan 2009: linear transmittance, camera-space thickness along the view ray, the inverse cosine of the

@@ -12,9 +12,8 @@
 namespace pellucid::harness::stress {
 
 std::unique_ptr<FrameRun> Renderer::prepare(const StressFrame& frame, const FrameRun* previous) {
-  const bool aliased = frame.settings.aliasOutput && frame.settings.debugView == PELLUCID_DEBUG_NONE;
   const Context& context = contexts_.of(frame.capture);
-  if (aliased || previous)
+  if (frame.settings.inPlace() || previous)
     return std::make_unique<FrameRun>(device_, context, frame.capture, frame.materials, frame.settings,
                                       previous);
   // Without the picture that an engine would have around the surface: garbage takes its place.
@@ -142,10 +141,6 @@ namespace {
 
 // Single bits: what may be written, what may be read.
 
-bool aliased(const StressFrame& f) {
-  return f.settings.aliasOutput && f.settings.debugView == PELLUCID_DEBUG_NONE;
-}
-
 // Some groups go by lists of the device's.
 bool hasLists(const FrameRun& run) {
   const PellucidPlan& plan = run.plan();
@@ -169,7 +164,7 @@ std::optional<Worst> notNegative(Subject& s) {
 std::optional<Worst> outside(Subject& s) { return changedOutside(s.before, s.output, s.owned); }
 
 std::optional<Worst> written(Subject& s) {
-  if (aliased(s.frame)) return {};
+  if (s.frame.settings.inPlace()) return {};
   return unwritten(s.output, s.owned);
 }
 
@@ -409,7 +404,7 @@ std::optional<Worst> uses(Subject& s) {
   constexpr const char* kNames[] = {"TRANSLUCENCY", "GATHER", "DIFFUSION", "REUSE", "DEBUG_VIEWS", "THIN_WALLS", "AMBIENT", "THESIS"};
   constexpr int kCount = static_cast<int>(std::size(kNames));
   Random random = s.random("uses");
-  if (!random.chance(0.3) || aliased(s.frame)) return {};
+  if (!random.chance(0.3) || s.frame.settings.inPlace()) return {};
   Random set(s.frame.seed, static_cast<std::uint64_t>(random.whole(0, 7)));
   std::uint32_t left = 0;
   for (int i = set.whole(1, 3); i > 0; --i) left |= 1u << set.whole(0, kCount - 1);
@@ -438,7 +433,7 @@ std::optional<Worst> mapFactor(Subject& s) {
 }
 
 std::optional<Worst> alpha(Subject& s) {
-  return differentAlpha(aliased(s.frame) ? s.before : s.run->irradiance(), s.output, s.owned);
+  return differentAlpha(s.frame.settings.inPlace() ? s.before : s.run->irradiance(), s.output, s.owned);
 }
 
 constexpr const char* kBits = "bits have no tolerance";

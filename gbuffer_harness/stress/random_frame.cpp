@@ -56,22 +56,7 @@ void randomTranslucency(Random& random, bool wild, const StressFrame& frame, Tra
   if (random.chance(0.1)) t.materialMarkBit = mark << random.whole(0, 3);
 }
 
-// The nearest planar distance of pixels with a material, as options.nearestDistance asks for.
-float nearestDistance(const StressFrame& frame, const View& view) {
-  const Capture& c = frame.capture;
-  double nearest = INFINITY;
-  for (std::size_t i = 0; i < c.material.size(); ++i) {
-    if (c.material[i] == 0) continue;
-    const double depth = static_cast<double>(c.frontDepth.image.data[i]);
-    double p = depth;
-    if (c.frontDepth.encoding == PELLUCID_DEPTH_DEVICE)
-      p = view.perspective ? view.b / (depth - view.a) : (depth - view.b) / view.a;
-    if (p > 0 && p < nearest) nearest = p;
-  }
-  return nearest < 1e9 ? static_cast<float>(nearest * 0.999) : 0;
-}
-
-void randomSettings(Random& random, const View& view, StressFrame& frame) {
+void randomSettings(Random& random, StressFrame& frame) {
   ReplaySettings& s = frame.settings;
   const double kind = random.real();
   s.features = kind < 0.55   ? PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION
@@ -80,7 +65,6 @@ void randomSettings(Random& random, const View& view, StressFrame& frame) {
                              : 0;
   randomTranslucency(random, frame.wild, frame, s.translucency);
   s.outputFormat = random.of({VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT});
-  if (random.chance(0.3)) s.nearestDistance = nearestDistance(frame, view);
   s.aliasOutput = random.chance(0.3);
   s.indirectDispatches = random.chance(0.6);
   if (random.chance(0.1))
@@ -171,7 +155,7 @@ StressFrame randomFrame(std::uint64_t seed, std::uint64_t index, const MaterialP
   }
   addRandomImages(random, frame.wild, view, count, c);
   addRandomLights(random, frame.wild, view, c);
-  randomSettings(random, view, frame);
+  randomSettings(random, frame);
   markPixels(random, frame);
   return frame;
 }

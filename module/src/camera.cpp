@@ -92,13 +92,12 @@ shared::Camera makeCamera(const glm::dmat4& m, const DepthRange& range, glm::uve
   return camera;
 }
 
-double pixelSide(const glm::dmat4& m, const DepthRange& range, glm::uvec2 extent, double distance) {
-  if (range.perspective && distance == 0) return 0;
+double pixelSide(const glm::dmat4& m, const DepthRange& range, glm::uvec2 extent) {
+  if (range.perspective) return 0;
   // clip.xy / w spans 2 over the image; see makeCamera.
-  const double w = range.c * distance + range.d;
   const glm::dmat2 inverse = glm::inverse(glm::dmat2(m[0][0], m[0][1], m[1][0], m[1][1]));
   return std::min(glm::length(inverse[0]) * 2 / extent.x, glm::length(inverse[1]) * 2 / extent.y) *
-         std::abs(w);
+         std::abs(range.d);
 }
 
 }  // namespace pellucid

@@ -23,9 +23,9 @@ const char* readDepthRange(const glm::dmat4& clipFromView, DepthRange* range);
 shared::Camera makeCamera(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent,
                           double metersPerUnit, glm::ivec2 first = {0, 0});
 
-// Shorter side of a pixel on a facing surface at a planar distance, scene units. All that is farther or
-// tilted has a longer one. 0: a perspective camera, and no distance.
-double pixelSide(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent, double distance);
+// Shorter side of an orthographic camera's pixel on a facing surface, scene units. All that is tilted has a longer one. 0: a perspective
+// camera.
+double pixelSide(const glm::dmat4& clipFromView, const DepthRange& range, glm::uvec2 extent);
 
 glm::dmat4 toMatrix(const float (&columns)[16]);
 inline glm::dvec3 toVector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }

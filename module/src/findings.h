@@ -9,12 +9,10 @@
 
 namespace pellucid {
 
-// Appends into a caller's buffer, and counts what did not fit.
+// Appends into a caller's buffer, and leaves out what does not fit.
 class Text {
 public:
-  Text(char* buffer, std::size_t capacity) : buffer_(buffer), capacity_(buffer ? capacity : 0) {
-    if (capacity_ > 0) buffer_[0] = '\0';
-  }
+  Text(char* buffer, std::size_t capacity) : buffer_(buffer), capacity_(capacity) { buffer_[0] = '\0'; }
 
   Text& operator<<(std::string_view s);
   Text& operator<<(const char* s) { return *this << std::string_view(s); }
@@ -25,9 +23,6 @@ public:
     const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
     return *this << std::string_view(digits, static_cast<std::size_t>(end - digits));
   }
-
-  // Bytes the whole text needs, terminator included.
-  std::size_t needed() const { return size_ + 1; }
 
 private:
   char* buffer_;

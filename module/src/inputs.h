@@ -18,7 +18,9 @@ struct Inputs {
   // The output is the irradiance's view.
   bool inPlace() const { return given(frame.output) && frame.output.view == frame.irradiance.view; }
   // The output shares no memory with the irradiance.
-  bool separate() const { return frame.options.separateOutput != 0 || frame.options.addToOutput == 1; }
+  bool separate() const {
+    return frame.options.addToOutput == 1 || (given(frame.output) && given(frame.irradiance) && !inPlace());
+  }
   // Bits of a material value that may hold the index.
   uint32_t materialBits() const {
     return (frame.options.materialMask == 0 ? UINT32_MAX : frame.options.materialMask) >> frame.options.materialShift;

@@ -69,11 +69,3 @@ extern "C" PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint
   const auto facts = readFrame(frame, silent);
   return facts ? imageNeeds(*facts, count, needs) : silent.result();
 }
-
-extern "C" uint32_t pellucidGetRequiredInputs(uint32_t features) {
-  uint32_t images = 0;
-  if ((features & (PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION)) == 0) return images;
-  for (const ImageField& image : kImageFields)
-    if (image.required) images |= 1u << image.resource;
-  return images;
-}

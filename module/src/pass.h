@@ -65,9 +65,6 @@ void forEach(BindingSet set, Each&& each) {
 
 // ---- Passes
 
-// Statistics that a pass's groups count for.
-enum class Counted { Nothing, Blocks, EntryPoints, Probes };
-
 struct Pass {
   const char* pipeline;  // name
   std::span<const uint32_t> words;
@@ -75,7 +72,6 @@ struct Pass {
   uint32_t uses;                                 // PellucidUse bits, all of which it takes to make it
   BindingSet reads, writes;
   std::span<const PellucidSpecialization> constants = {};
-  Counted counted = Counted::Nothing;
 
   constexpr BindingSet bindings() const { return reads | writes; }
   std::span<const uint32_t> wordsFor(VkImageViewType shadowViewType) const {

@@ -229,8 +229,7 @@ constexpr Pass kEntryPointsPass{
              bindings(PELLUCID_BINDING_FRAME, PELLUCID_BINDING_LIGHTS, PELLUCID_BINDING_GATHER_MAPS,
                       PELLUCID_BINDING_ENTRY_MAPS, PELLUCID_BINDING_FRONT_DEPTH, PELLUCID_BINDING_BACK_DEPTH, PELLUCID_BINDING_MATERIAL,
                       PELLUCID_BINDING_BLOCKS),
-    .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION),
-    .counted = Counted::EntryPoints};
+    .writes = bindings(PELLUCID_BINDING_ENTRIES_DESTINATION)};
 
 constexpr bool gathers(const FrameFacts& f) { return f.stages.gathered > 0; }
 
@@ -274,8 +273,7 @@ constexpr Pass kProbesPass{.pipeline = "probes",
                            .words = kProbes,
                            .uses = kGather,
                            .reads = kProbeReads,
-                           .writes = kProbeWrites,
-                           .counted = Counted::Probes};
+                           .writes = kProbeWrites};
 
 constexpr MadeImage kFoundProbes{.texels = Texels::Packed, .made = &gathers, .extent = &extentOfCells};
 
@@ -350,8 +348,7 @@ constexpr Pass kDiffusePass{
     .uses = kDiffusion,
     .reads = kColorReads |
              bindings(PELLUCID_BINDING_PYRAMID, PELLUCID_BINDING_FILTERED_PROBES, PELLUCID_BINDING_BLOCKS),
-    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS),
-    .counted = Counted::Blocks};
+    .writes = kColorWrites | bindings(PELLUCID_BINDING_LISTS)};
 
 // With the light of the probes, if the frame has some.
 void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {

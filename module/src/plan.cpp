@@ -79,7 +79,6 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
   plan->gatherSamples = f.gatherSamples;
-  if (f.stages.diffusion) plan->largestRadius = static_cast<float>(f.largestRadius);
   Skips skips = skipsOf(f);
   PlanState state;
   const bool reused = f.stages.keepsHistory && decideReuse(f, kept, &state.history);
@@ -98,6 +97,7 @@ PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan*
   state.outputFormat = f.frame.options.outputFormat;
   state.lightTables = f.frame.options.lightTableCount;
   state.options = optionsOf(f);
+  state.separate = f.separate();
   state.layeredMap = layeredMap(f.frame);
   if (state.layeredMap > 0) state.layer = f.frame.shadowMaps[state.layeredMap - 1].options.layer;
   std::memcpy(plan->state, &state, sizeof state);

@@ -66,6 +66,7 @@ struct PlanState {
   uint32_t lightTables = 0;
   uint32_t options = 0;                // PellucidUse bits that pipelines must look for
   uint32_t layeredMap = 0, layer = 0;  // the first map in a layer above 0, plus 1; 0: none
+  uint32_t separate = 0;               // 1: output and irradiance share no memory
 };
 static_assert(sizeof(PlanState) <= sizeof(PellucidPlan::state) && std::is_trivially_copyable_v<PlanState>);
 

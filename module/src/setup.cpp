@@ -76,11 +76,8 @@ Setup::Setup(const Inputs& inputs)
   camera = makeCamera(clipFromView, depthRange, extent, frame.metersPerUnit, lattice.first);
 
   const double mmPerPixel =
-      pixelSide(clipFromView, depthRange, extent, static_cast<double>(frame.options.nearestDistance)) *
-      static_cast<double>(frame.metersPerUnit) * 1000;
-  // No infinity may reach the plan's text.
-  pixelsPerMm = mmPerPixel > 0 ? std::min(1 / mmPerPixel, 1e30) : 0;
-  const auto pixels = [&](double mm) { return std::min(mm * pixelsPerMm, 1e30); };
+      pixelSide(clipFromView, depthRange, extent) * static_cast<double>(frame.metersPerUnit) * 1000;
+  pixelsPerMm = mmPerPixel > 0 ? 1 / mmPerPixel : 0;
   float shortestLength = std::numeric_limits<float>::infinity();
   for (uint32_t i = 0; i < frame.materialCount; ++i) {
     const PellucidMaterial m = diffused(i);
@@ -88,9 +85,7 @@ Setup::Setup(const Inputs& inputs)
     if (m.thinWalled == 0) shortestLength = std::min(shortestLength, diffusionLength(m));
     if (m.gaussianCount == 0) continue;
     diffuses = true;
-    const float radius = *std::max_element(m.radius, m.radius + 3);
-    largestRadius = std::max(largestRadius, pixels(static_cast<double>(radius)));
-    widestDeviation = std::max(widestDeviation, pixels(deviationOf(m)));
+    widestDeviation = std::max(widestDeviation, pixelsPerMm * deviationOf(m));
   }
 
   whyNotGathered = whyNot(inputs, solids);

@@ -31,10 +31,7 @@ struct Setup : Inputs {
   // ---- All materials together
   bool diffuses = false;                   // a material does
   bool thinWalls = false, solids = false;  // a material is thin-walled; one is not
-  // Reach of the materials that diffuse, at options.nearestDistance; all 0 where that does not say how large
-  // a pixel is.
-  double pixelsPerMm;
-  double largestRadius = 0;    // pixels; PellucidMaterial::radius
+  double pixelsPerMm;          // of an orthographic camera; 0: perspective, where distances are not known
   double widestDeviation = 0;  // pixels; standard deviation of a Gaussian
 
   // ---- The gather

@@ -215,8 +215,6 @@ void checkViews(const FrameFacts& facts, Findings& out) {
     if (!given(f.transients[i])) out.error(field, "has no view; see pellucidGetImageNeeds");
     checkGeneral(f.transients[i], field, out);
   }
-  if (f.options.separateOutput && facts.inPlace())
-    out.error("options.separateOutput", "is 1, but the output is the irradiance's view");
   if (f.options.addToOutput == 1 && facts.inPlace())
     out.error("options.addToOutput", "is 1, but the output is the irradiance's view");
   checkGeneral(f.output, "output", out);

@@ -84,6 +84,8 @@ void checkBound(const PellucidContext& c, const PellucidPlan& plan, const Pelluc
       if (!isThere || !given(imageOf(frame, resource)))
         return out.error(fieldOf(resource), "has no view, but the plan binds it");
     }
+  if (stateOf(plan).separate && given(frame.output) && frame.output.view == frame.irradiance.view)
+    out.error("output", "is the irradiance's view, but the plan was made for two images");
 }
 
 // Bits 1 << PellucidResource of the images that a plan binds, without shadow images, which nothing writes.

@@ -28,7 +28,7 @@ std::string imagesTable() {
   struct Row {
     uint32_t resource;
     const char* content;
-    const char* without;
+    const char* without;  // what a frame without the image lacks; empty: the image is required
   };
   const Row rows[] = {
       {PELLUCID_RESOURCE_FRONT_DEPTH, "device depth or view z (planar distance) of the visible surface", ""},
@@ -51,12 +51,10 @@ std::string imagesTable() {
        "a material are written",
        ""},
   };
-  const uint32_t required =
-      pellucidGetRequiredInputs(PELLUCID_FEATURE_TRANSLUCENCY | PELLUCID_FEATURE_DIFFUSION);
   std::string table = "| image | content | required | without it |\n|-|-|-|-|\n";
   for (const Row& row : rows)
     table += std::string("| `") + pellucidResourceName(row.resource) + "` | " + row.content + " | " +
-             (required & (1u << row.resource) ? "yes" : "no") + " | " + row.without + " |\n";
+             (*row.without ? "no" : "yes") + " | " + row.without + " |\n";
   return table;
 }
 

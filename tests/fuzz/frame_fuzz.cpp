@@ -1,7 +1,6 @@
 // Validation, plan, needs, constants, recording and JSON of any frame.
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
@@ -60,15 +59,6 @@ void checkPlan(const PellucidPlan& plan) {
     require(d.name && d.pipeline < pellucidGetPipelineCount() && pellucidGetBindings(&plan, i, bindings) > 0,
             "a dispatch has a name, a pipeline and bindings");
   }
-  size_t size = 0;
-  require(pellucidPlanToJson(&plan, nullptr, &size) == PELLUCID_OK, "JSON says its size");
-  std::vector<char> text(size);
-  require(pellucidPlanToJson(&plan, text.data(), &size) == PELLUCID_OK && size == text.size(),
-          "JSON fits the size it says");
-  require(nlohmann::json::accept(text.data()), "a plan's JSON is JSON");
-  size = text.size() - 1;
-  require(pellucidPlanToJson(&plan, text.data(), &size) == PELLUCID_ERROR_BUFFER_TOO_SMALL,
-          "a text buffer that is too small is refused");
 }
 
 void checkNeeds(const PellucidFrame& frame, bool hasPlan) {

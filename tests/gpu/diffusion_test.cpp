@@ -236,8 +236,8 @@ TEST_F(Diffusion, PixelsWithoutADepthKeepTheirIrradiance) {
 }
 
 // Some texture everywhere.
-Capture perspective(int size) {
-  Capture c = perspectiveCapture(size);
+Capture textured(Capture c) {
+  const int size = c.width;
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < size; ++x)
       light(c, x, y,
@@ -245,19 +245,20 @@ Capture perspective(int size) {
   return c;
 }
 
-// What the distance leaves out is not missed: levels that no Gaussian reaches.
+// What plans of orthographic cameras leave out is not missed: levels that no Gaussian reaches.
 TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
-  const Capture c = perspective(96);
+  const Capture perspective = textured(perspectiveCapture(96));
+  Capture orthographic = textured(flatCapture(96, 96));
+  orthographic.clipFromView[0] = 2 / (0.5 * 96);  // the same pixels of .5 mm
+  orthographic.clipFromView[5] = -orthographic.clipFromView[0];
   struct Row {
     std::initializer_list<double> deviations;
     uint32_t dropped;  // levels
   };
   for (const Row& row : {Row{{0.7, 1.5, 3, 5.5}, 4}, {{7}, 2}, {{1, 21.5}, 2}}) {
     const PellucidMaterial m = gaussians(row.deviations, 0.5);
-    ReplaySettings s = diffusionOnly();
-    const ReplayResult all = replayer().run(c, {m}, s);
-    s.nearestDistance = 10;
-    const ReplayResult fewer = replayer().run(c, {m}, s);
+    const ReplayResult all = replayer().run(perspective, {m}, diffusionOnly());
+    const ReplayResult fewer = replayer().run(orthographic, {m}, diffusionOnly());
     EXPECT_EQ(coarsestUpsampled(fewer.plan) + row.dropped, coarsestUpsampled(all.plan));
     EXPECT_EQ(fewer.plan.dispatchCount + row.dropped / 4, all.plan.dispatchCount) << "levels 4 to 7 have one";
     double most = 0;

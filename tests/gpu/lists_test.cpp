@@ -65,7 +65,6 @@ constexpr Way kWays[] = {
        s.materialShift = 4;
        s.materialMask = 0xFF0;
      }},
-    {"a distance that is known", [](ReplaySettings& s) { s.nearestDistance = 10; }},
 };
 
 // The transients hold NaN before each recording, so that a texel that no group wrote shows.
@@ -95,9 +94,9 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
   const auto groups = [&] {
     const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
     record(run);
-    const PellucidStatistics statistics = run.statistics();
-    std::map<std::string, PellucidGroups> found;
-    for (uint32_t i = statistics.dispatchCount; i-- > 0;)
+    const Statistics statistics = run.statistics();
+    std::map<std::string, Groups> found;
+    for (uint32_t i = run.plan().dispatchCount; i-- > 0;)
       found[run.plan().dispatches[i].name] = statistics.dispatches[i];
     return found;
   };
@@ -197,7 +196,7 @@ TEST_F(Lists, SmallFramesNeedFewEntryPoints) {
 
 // Material at random: the statistics, the lists and a look at each pixel agree.
 TEST_F(Lists, StatisticsAndBlocksAreThoseOfTheMaterial) {
-  constexpr int kSide = 256, kBlock = PELLUCID_STATISTICS_BLOCK;
+  constexpr int kSide = 256, kBlock = 64;
   for (const bool rect : {false, true}) {
     Capture c = islands(kSide, kSide, 2);
     c.lights.push_back(c.lights[0]);
@@ -206,7 +205,7 @@ TEST_F(Lists, StatisticsAndBlocksAreThoseOfTheMaterial) {
     if (rect) settings.renderRect = {35, 21, 180, 171};
     const FrameRun frame(device(), replayer().contextFor(c), c, {testMaterial()}, settings);
     record(frame);
-    const PellucidStatistics s = frame.statistics();
+    const Statistics s = frame.statistics();
     const BlockMap map = readBlockMap(frame);
     std::vector<BlockClass> expected(map.blocks.size(), BlockClass::Empty);
     const auto at = [&](int column, int row) -> BlockClass& {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "capture/material.h"
-#include "cli/capture_checks.h"
 #include "common/compare.h"
 #include "common/error.h"
 #include "gpu/gpu_fixture.h"
@@ -75,11 +74,6 @@ const std::vector<Row> kRows = {
      "-.9,-.9,-.9,-.9",
      Effect::Changes,
      {{"-.5,.5", "minimumDotTable"}, {"-.5,,0"}}},
-    {"nearest-distance",
-     {},
-     "10",
-     Effect::Keeps,
-     {{"-1", "nearestDistance"}, {"10000", "nearest-distance"}, {"nan"}}},
     {"polynomial",
      {"angle=polynomial"},
      "-.5,.3,0,0",
@@ -109,7 +103,6 @@ protected:
     options.set = std::move(set);
     const ReplaySettings settings = options.parse();
     const std::vector<PellucidMaterial> materials = compileMaterials(capture_);
-    requireNearestDistance(capture_, materials, settings);
     return rgb(replayer().run(capture_, materials, settings).output);
   }
 

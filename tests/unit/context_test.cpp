@@ -307,7 +307,7 @@ void shape(Frame& f, uint32_t kind) {
 
 struct Recorded {
   std::vector<unsigned char> constants;
-  std::string json;
+  std::string plan;  // bytesOf
   uint32_t dispatches = 0;
   bool operator==(const Recorded&) const = default;
 };
@@ -325,10 +325,7 @@ std::string record(const PellucidContext* context, uint32_t kind, Recorded* out)
   NullCommands commands;
   if (recordOnNull(context, commands, plan, f.frame, out->constants) != PELLUCID_OK) return "not recorded";
   out->dispatches = commands.dispatches;
-  size_t size = 0;
-  pellucidPlanToJson(&plan, nullptr, &size);
-  out->json.resize(size);
-  if (pellucidPlanToJson(&plan, out->json.data(), &size) != PELLUCID_OK) return "no JSON";
+  out->plan = bytesOf(plan);
   return commands.problem;
 }
 

@@ -225,7 +225,7 @@ TEST(Plan, DiffusionAloneCopiesTheIrradianceUnlessTheOutputIsSeparate) {
     Names passes[2];
     uint32_t needs[2] = {};
     for (const uint32_t separate : {0u, 1u}) {
-      f.frame.options.separateOutput = separate;
+      f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{1 + separate});
       const PellucidPlan plan = f.plan();
       passes[separate] = names(plan);
       EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &needs[separate], nullptr), PELLUCID_OK);
@@ -513,65 +513,46 @@ TEST(Plan, GroupsCoverTheFrameOnce) {
   EXPECT_EQ(plan.dispatches[0].groups[1], (f.frame.imageExtent[1] + rows - 1) / rows);
 }
 
-// ---- The diffusion's radius and levels
+// ---- The diffusion's levels
 
-// A pixel of the fixture's camera, 100 x 50 pixels over 2 p x 2 p mm at distance p, is 2 p / 100 mm at its
-// shorter side; the material's radius is 5 mm.
-TEST(Plan, RadiusIsProjected) {
-  Frame f;
-  EXPECT_EQ(f.plan().largestRadius, 0) << "a perspective camera without a distance";
-  f.frame.options.nearestDistance = 50;
-  EXPECT_FLOAT_EQ(f.plan().largestRadius, 5);
-  f.frame.options.nearestDistance = 25;
-  EXPECT_FLOAT_EQ(f.plan().largestRadius, 10);
-  f.frame.metersPerUnit = 0.01f;
-  EXPECT_FLOAT_EQ(f.plan().largestRadius, 1);
-  f.material.radius[2] = 15;
-  EXPECT_FLOAT_EQ(f.plan().largestRadius, 3) << "the widest channel";
-  f.frame.options.nearestDistance = 1e-38f;
-  EXPECT_TRUE(std::isfinite(f.plan().largestRadius));
-  f.frame.options.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  EXPECT_EQ(f.plan().largestRadius, 0) << "nothing diffuses";
-
-  Frame parallel;
-  const float projection[16] = {0.1f, 0, 0, 0, 0, -0.1f, 0, 0, 0, 0, -0.01f, 0, 0, 0, 0, 1};
-  std::copy(projection, projection + 16, parallel.frame.clipFromView);
-  for (const float distance : {0.0f, 7.0f}) {
-    parallel.frame.options.nearestDistance = distance;
-    EXPECT_FLOAT_EQ(parallel.plan().largestRadius, 25) << "20 mm over 100 pixels, at any distance";
+// 100 x 50 pixels over 20 units.
+struct Orthographic : Frame {
+  Orthographic() {
+    const float projection[16] = {0.1f, 0, 0, 0, 0, -0.1f, 0, 0, 0, 0, -0.01f, 0, 0, 0, 0, 1};
+    std::copy(projection, projection + 16, frame.clipFromView);
   }
-}
+};
 
 // The widest Gaussian of the fixture's material has a deviation of 1.41 mm.
 TEST(Plan, SmallRadiiDropLevelsAndNoImages) {
-  Frame f;
-  const auto coarsest = [&] { return find(f.plan(), "upsample")->pushConstants[0]; };
-  EXPECT_EQ(coarsest(), 7u) << "not known";
+  const auto coarsest = [](const Frame& f) { return find(f.plan(), "upsample")->pushConstants[0]; };
+  EXPECT_EQ(coarsest(Frame()), 7u) << "a perspective camera has no scale";
+  Orthographic f;
   struct Row {
-    float distance;
+    float metersPerUnit;
     uint32_t coarsest;
   };
-  // 23.6, 21.4, 5.9, 5.4, .07 pixels
-  for (const Row& row : {Row{3, 7}, {3.3f, 5}, {12, 5}, {13, 3}, {1000, 3}}) {
-    f.frame.options.nearestDistance = row.distance;
+  // 23.6, 21.4, 5.9, 5.4, .007 pixels
+  for (const Row& row : {Row{3e-4f, 7}, {3.3e-4f, 5}, {1.2e-3f, 5}, {1.3e-3f, 3}, {1, 3}}) {
+    f.frame.metersPerUnit = row.metersPerUnit;
     const PellucidPlan plan = f.plan();
     const PellucidDispatch* coarse = find(plan, "coarse levels");
-    EXPECT_EQ(coarse ? coarse->pushConstants[1] : 3, row.coarsest) << row.distance;
-    EXPECT_EQ(coarsest(), row.coarsest) << row.distance;
+    EXPECT_EQ(coarse ? coarse->pushConstants[1] : 3, row.coarsest) << row.metersPerUnit;
+    EXPECT_EQ(coarsest(f), row.coarsest) << row.metersPerUnit;
   }
-  f.frame.options.nearestDistance = 13;
+  f.frame.metersPerUnit = 1.3e-3f;
   f.material.gaussianVariance[1][0] = 4;  // 7.7 pixels
-  EXPECT_EQ(coarsest(), 5u) << "any Gaussian of any channel";
+  EXPECT_EQ(coarsest(f), 5u) << "any Gaussian of any channel";
   f.material.gaussianWeight[1][0] = 0;
   f.material.gaussianWeight[1][1] = 1;
-  EXPECT_EQ(coarsest(), 3u) << "that has a weight";
+  EXPECT_EQ(coarsest(f), 3u) << "that has a weight";
 
-  // The images that the caller creates do not follow a distance that changes every frame.
+  // The images that the caller creates do not follow a scale that a zoom changes.
   PellucidImageNeed needs[2][PELLUCID_MAX_TRANSIENTS];
   uint32_t counts[2] = {PELLUCID_MAX_TRANSIENTS, PELLUCID_MAX_TRANSIENTS};
-  for (const size_t known : {0u, 1u}) {
-    f.frame.options.nearestDistance = known ? 50 : 0;
-    ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &counts[known], needs[known]), PELLUCID_OK);
+  for (const size_t wide : {0u, 1u}) {
+    f.frame.metersPerUnit = wide ? 1 : 3e-4f;
+    ASSERT_EQ(pellucidGetImageNeeds(&f.frame, &counts[wide], needs[wide]), PELLUCID_OK);
   }
   ASSERT_EQ(counts[0], counts[1]);
   for (uint32_t i = 0; i < counts[0]; ++i)
@@ -579,16 +560,16 @@ TEST(Plan, SmallRadiiDropLevelsAndNoImages) {
 }
 
 TEST(Plan, RadiiBeyondThePyramidAreReported) {
-  Frame f;
+  Orthographic f;
   PellucidMaterial materials[3] = {f.material, f.material, f.material};
   materials[1].gaussianVariance[0][1] = 16;  // 4 mm
   materials[2].gaussianCount = 0;
   f.frame.materials = materials;
   f.frame.materialCount = 3;
-  // 50 pixels a mm at distance 1; level 7 is 97.8 pixels; 0 is not known.
-  for (const auto& [distance, count] : {std::pair(1.0f, 1u), {0.7f, 2u}, {3.0f, 0u}, {0.0f, 0u}}) {
-    f.frame.options.nearestDistance = distance;
-    EXPECT_EQ(skipped(f.plan(), "diffusion radius"), count) << distance;
+  // 50 pixels a mm with .1 mm a unit; level 7 is 97.8 pixels.
+  for (const auto& [metersPerUnit, count] : {std::pair(1e-4f, 1u), {7e-5f, 2u}, {3e-4f, 0u}}) {
+    f.frame.metersPerUnit = metersPerUnit;
+    EXPECT_EQ(skipped(f.plan(), "diffusion radius"), count) << metersPerUnit;
   }
 }
 

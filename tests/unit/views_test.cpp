@@ -212,6 +212,8 @@ const Refusal kRefusals[] = {
      "views[1].output is views[0].output, too"},
     {"OutputThatIsAnInput", [](View& a, View& b, auto&) { a.f.frame.output = b.f.frame.irradiance; },
      "views[1].irradiance is views[0].output, too"},
+    {"InPlaceByAPlanOfTwoImages", [](View& a, View&, auto&) { a.f.frame.output = a.f.frame.irradiance; },
+     "views[0].output is the irradiance's view"},
     {"InputThatIsATransient", [](View& a, View& b, auto&) { b.f.frame.backDepth = a.f.frame.transients[0]; },
      "views[1].backDepth is views[0].transients[0], too"},
     {"OneHistory",

@@ -5,7 +5,6 @@
  * struct (pellucid_options.h). pellucid_material.h makes materials. Other headers are for further work:
  * - pellucid_plan.h: record a plan yourself. pellucid.h includes it, but most engines need not read it.
  * - pellucid_views.h: record several views at once.
- * - pellucid_statistics.h: read the decisions of the device.
  * - pellucid_thesis.h: options of Whelan 2009.
  *
  * C ABI, Vulkan headers only. The caller owns images, buffers and command buffers. The module creates pipelines and layouts, and
@@ -184,7 +183,8 @@ typedef struct PellucidFrame {
    * this frame minus the place in the earlier frame. Its unit is the image's width and height. */
   PellucidImage motion;
   /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
-   * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. */
+   * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. Two views count as two images
+   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. */
   PellucidImage output;
   /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
@@ -233,7 +233,8 @@ typedef struct PellucidImageNeed {
 
 /* Lists the transients of this frame in order, then with reuse the persistent image. The images serve every render rect. Writes at most
  * *count needs, and sets *count to the number of all. `needs` may be NULL. Transients need no views yet. Optional inputs count as given
- * if they have views. Errors: INVALID_ARGUMENT, CAPACITY. */
+ * if they have views. `output` and `irradiance` have the plan's views, because frames in place may need one transient more. Any handles
+ * can stand for views. Errors: INVALID_ARGUMENT, CAPACITY. */
 PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* ---- Plan and recording -------------------------------------------------------------------------- */
@@ -278,7 +279,8 @@ enum {
  * - Before: the inputs are visible to PELLUCID_STAGES / PELLUCID_READS. Output and transients are free for PELLUCID_WRITES.
  * - After: PELLUCID_STAGES / PELLUCID_WRITES have written `output`.
  * - State: recording changes pipeline and sets of the compute bind point, and 16 bytes of push constants.
- * - Frame: recording reads only images and descriptor pool of `frame`. Both may differ from those of pellucidBuildPlan.
+ * - Frame: recording reads only images and descriptor pool of `frame`. Both may differ from those of pellucidBuildPlan. A plan of two
+ *   views of output and irradiance refuses one view.
  * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a pipeline that the context lacks, or a bad slice;
  *   BUFFER_TOO_SMALL; OUT_OF_MEMORY and VULKAN of the descriptor pool. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,

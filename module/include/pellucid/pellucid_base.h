@@ -34,7 +34,7 @@ enum {
   PELLUCID_ERROR_OUT_OF_MEMORY = -4,    /* host or device memory is exhausted */
   PELLUCID_ERROR_VULKAN = -5,        /* a Vulkan call failed; the message has the VkResult */
   PELLUCID_ERROR_CAPACITY = -6,      /* the frame needs more dispatches or shadow images than a plan holds */
-  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* a constants slice or text buffer is too short */
+  PELLUCID_ERROR_BUFFER_TOO_SMALL = -7 /* a constants slice is too short */
 };
 
 /* Severity of a message. An error stops a frame. */

@@ -157,8 +157,6 @@ typedef struct PellucidFrameOptions {
    * later pass (docs/integration.md). The sum is clamped to 0..65504, NaN counts as 0, and alpha stays. The output then has usage
    * SAMPLED, too, and is not the irradiance image. Debug views still replace the output. */
   uint32_t addToOutput;
-  /* 1: output and irradiance image share no memory. Diffusion without lights then saves a copy. 0 (default): they may share memory. */
-  uint32_t separateOutput;
 
   /* ---- the gather: light of maps that comes through ---- */
 
@@ -171,10 +169,6 @@ typedef struct PellucidFrameOptions {
    * pixels, else 1. Probes of 2 cost a quarter of probes of 1, and probes of 4 a quarter of probes of 2. 4 needs pixels far smaller than a
    * diffusion length. */
   uint32_t gatherSpacing;
-  /* Planar distance from the eye to the nearest surface that diffuses, or less, in scene units, 0..1e15. The plan leaves out pyramid levels
-   * that no radius needs at this distance. Nearer surfaces are diffused too little. 0 (default): not known. Orthographic cameras need no
-   * distance. */
-  float nearestDistance;
   /* 1: light of all lights enters the face that a pixel hides, frame.backDepth gives the thickness, and shadow maps only occlude. 0
    * (default): lights with a map of front faces have the light-space thickness. Lights without such a map are always as with 1. Shadow
    * maps and backDepthEncoding THICKNESS refuse 1, as a thickness does not tell where the hidden face lies. */

@@ -1,4 +1,4 @@
-/* Fields of a plan, for engines that record plans themselves, and a plan's JSON.
+/* Fields of a plan, for engines that record plans themselves.
  *
  * A plan is plain data with pointers to static strings alone. A copy of a plan is a valid plan. A plan outlives its
  * frame. pellucid.h includes pellucid_plan.h, because a caller's plan needs a complete type.
@@ -60,7 +60,10 @@ typedef struct PellucidDispatch {
   uint32_t groups[3];
   /* Push constants from offset 0 on. */
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
-  /* Bytes from the slice's offset to the VkDispatchIndirectCommand. */
+  /* Bytes from the slice's offset to five 32-bit words. The first three are the VkDispatchIndirectCommand. After the frame, word 4 has
+   * the x of the workgroups that ran, words 1 and 2 have their y and z, and word 0 is 0 again. A host that reads the words needs a barrier
+   * from PELLUCID_STAGES / PELLUCID_WRITES to HOST / HOST_READ. The host reads after the submission's fence and before the next
+   * pellucidWriteConstants into the slice. */
   uint32_t indirectOffset;
   /* Index below pellucidGetPipelineCount(). pellucidPipelineName names it. */
   uint8_t pipeline;
@@ -100,8 +103,6 @@ struct PellucidPlan {
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
   /* skipCount skips. */
   PellucidSkip skips[PELLUCID_MAX_SKIPS];
-  /* Largest radius of all materials and channels, in pixels at options.nearestDistance. 0: not known, or no material diffuses. */
-  float largestRadius;
   /* Samples of each probe. 0: lights with a shadow map have one thickness a pixel. */
   uint32_t gatherSamples;
   /* Age of options.history in frames. ALTERNATE, COHERENCE: frames since a frame computed the light that comes through; 0: this frame
@@ -156,13 +157,6 @@ PELLUCID_API uint32_t pellucidGetPipelineCount(void);
  * type. */
 PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
                                               PellucidShader* shader);
-
-/* The screen-sized images that `features` (PellucidFeatureBits) need, as bits 1 << PellucidResource. */
-PELLUCID_API uint32_t pellucidGetRequiredInputs(uint32_t features);
-
-/* Writes a plan as zero-terminated JSON. *size is the room in `text` in bytes, and becomes the needed bytes with the terminator. With
- * `text` NULL the function only sets *size. Errors: INVALID_ARGUMENT, BUFFER_TOO_SMALL. */
-PELLUCID_API PellucidResult pellucidPlanToJson(const PellucidPlan* plan, char* text, size_t* size);
 
 /* Name of a PellucidResource: "frontDepth", ... or "unknown resource". */
 PELLUCID_API const char* pellucidResourceName(uint32_t resource);
