@@ -33,7 +33,7 @@ inline PellucidMaterial plainMaterial() {
 struct Frame {
   PellucidFrame frame;
   PellucidThesisOptions thesis;
-  PellucidMaterial material = plainMaterial();
+  mutable PellucidMaterial material = plainMaterial();  // whose tables follow its fields
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> maps;
   std::vector<PellucidImage> images;
@@ -62,6 +62,7 @@ struct Frame {
       lights.push_back(light(i, 1));
     }
     if (shadowImages == 0) lights.push_back(light(0, 0));
+    tables();
     use();
   }
   Frame(const Frame&) = delete;
@@ -78,7 +79,20 @@ struct Frame {
     frame.shadowImages = images.data();
   }
 
+  // Messages of the material's tables, after a change to its fields.
+  std::string tables() const {
+    std::string text;
+    pellucidMakeMaterialTables(
+        &material,
+        [](void* user, PellucidSeverity, const char* field, const char* message) {
+          *static_cast<std::string*>(user) += "materials[0]." + std::string(field) + " " + message + "\n";
+        },
+        &text);
+    return text;
+  }
+
   PellucidPlan plan() const {
+    tables();
     PellucidPlan plan;
     EXPECT_EQ(pellucidBuildPlan(&frame, nullptr, &plan), PELLUCID_OK) << problems();
     return plan;
@@ -89,7 +103,8 @@ struct Frame {
     struct All {
       PellucidSeverity least;
       std::string text;
-    } all{least, {}};
+    } all{least, tables()};
+    if (!all.text.empty()) return all.text;
     pellucidValidateFrame(
         &frame,
         [](void* user, PellucidSeverity severity, const char* field, const char* message) {

@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "pyramid_energy.h"
-#include "pyramid_energy_table.h"
+#include "material/pyramid_energy.h"
+#include "material/pyramid_energy_table.h"
 
 namespace pellucid::fit {
 

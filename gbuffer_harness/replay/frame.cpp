@@ -150,24 +150,37 @@ PellucidLight pellucidLight(const Light& light) {
   return l;
 }
 
-std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials,
-                                                TransmittanceChoice choice) {
-  for (PellucidMaterial& m : materials) {
-    if (m.thinWalled) continue;
-    switch (choice) {
-      case TransmittanceChoice::Material:
-        break;
-      case TransmittanceChoice::Linear:
-        for (uint32_t c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
-        m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
-        break;
-      case TransmittanceChoice::Gaussians:
-        m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
-        break;
-      case TransmittanceChoice::GaussiansAsPrinted:
-        m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
-        break;
-    }
+namespace {
+
+void exchangeTransmittance(PellucidMaterial& m, TransmittanceChoice choice) {
+  switch (choice) {
+    case TransmittanceChoice::Material:
+      break;
+    case TransmittanceChoice::Linear:
+      for (uint32_t c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+      break;
+    case TransmittanceChoice::Gaussians:
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+      break;
+    case TransmittanceChoice::GaussiansAsPrinted:
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
+      break;
+  }
+}
+
+}  // namespace
+
+std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials, TransmittanceChoice choice) {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!materials[i].thinWalled) exchangeTransmittance(materials[i], choice);
+    std::string field = "materials[" + std::to_string(i) + "].", sentence;
+    std::array<std::string*, 2> said{&field, &sentence};
+    const auto keep = [](void* user, PellucidSeverity, const char* name, const char* message) {
+      const auto& [into, words] = *static_cast<std::array<std::string*, 2>*>(user);
+      if (words->empty()) *into += name, *words = message;
+    };
+    if (pellucidMakeMaterialTables(&materials[i], keep, &said) != PELLUCID_OK) throw InputError("frame", field, sentence);
   }
   return materials;
 }
@@ -216,12 +229,6 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
   f.options.backDepthEncoding = capture.backDepth.encoding;
   f.materialCount = static_cast<uint32_t>(data.materials.size());
   f.materials = data.materials.data();
-  data.materialTables.resize(data.materials.size());
-  bool valid = true;  // validation says what is not
-  for (size_t i = 0; i < data.materials.size(); ++i)
-    valid = valid && pellucidMakeMaterialTables(&data.materials[i], &data.materialTables[i]) == PELLUCID_OK;
-  if (!valid) data.materialTables.clear();
-  f.options.materialTables = valid ? data.materialTables.data() : nullptr;
   f.lightCount = static_cast<uint32_t>(data.lights.size());
   f.lights = data.lights.data();
   f.options.lightTableCount = static_cast<uint32_t>(data.lightTables.size());

@@ -24,7 +24,6 @@ struct FrameData {
   PellucidFrame frame;
   PellucidThesisOptions thesis;
   std::vector<PellucidMaterial> materials;
-  std::vector<PellucidMaterialTables> materialTables;  // none where a material is not valid
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> shadowMaps;
   std::vector<PellucidImage> shadowImages;

@@ -7,7 +7,6 @@ class PellucidPass {
 public:
   PellucidPass(Device& device, const std::vector<PellucidMaterial>& materials)
       : materials_(materials),
-        tables_(materials.size()),
         ring_(device, kFramesInFlight * slice_, kConstantsUsage) {
     PellucidContextDesc desc;
     pellucidInitContextDesc(&desc);
@@ -15,8 +14,6 @@ public:
     desc.device = device.handle(), desc.getInstanceProcAddr = vkGetInstanceProcAddr, desc.message = report;
     desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
     require(pellucidCreateContext(&desc, &context_));
-    size_t i = 0;
-    for (PellucidMaterialTables& t : tables_) require(pellucidMakeMaterialTables(&materials_[i++], &t));
   }
   ~PellucidPass() { pellucidDestroyContext(context_); }
 
@@ -39,7 +36,7 @@ public:
     frame.options.materialMask = 0xFF0000, frame.options.materialShift = 16;  // beside roughness
     frame.options.addToOutput = 1;                                            // to specular light
     frame.materialCount = static_cast<uint32_t>(materials_.size()), frame.materials = materials_.data();
-    frame.options.materialTables = tables_.data(), frame.options.gatherSamples = f.gatherSamples;
+    frame.options.gatherSamples = f.gatherSamples;
     frame.options.ambient = f.hasAmbient ? &f.ambient[0][0] : nullptr;
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
@@ -77,7 +74,6 @@ private:
   }
   static void put(const glm::dmat4& m, float (&to)[16]) { std::copy_n(&glm::mat4(m)[0][0], 16, to); }
   std::vector<PellucidMaterial> materials_;
-  std::vector<PellucidMaterialTables> tables_;
   VkDeviceSize slice_ = pellucidGetConstantsSize(kMostMaterials, kMostLights, kMostTiles);
   HostBuffer ring_;
   PellucidContext* context_ = nullptr;

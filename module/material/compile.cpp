@@ -11,7 +11,7 @@
 #include "pellucid/pellucid_material.h"
 #include "presets.h"
 #include "profile.h"
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid::material {
 namespace {
@@ -213,6 +213,11 @@ Result compile(const PellucidMaterialDesc& desc) {
     compileThinWall(desc, result);
   else
     compileGaussians(desc, result);
+  const auto refuse = [](void* refusal, PellucidSeverity, const char* field, const char* sentence) {
+    static_cast<std::optional<Refusal>*>(refusal)->emplace(std::string("material.") + field, sentence);
+  };
+  std::optional<Refusal> refusal;
+  if (pellucidMakeMaterialTables(&result.material, refuse, &refusal) != PELLUCID_OK) throw *refusal;
   const std::string_view name = kindName(desc);
   name.copy(result.report.name, sizeof result.report.name - 1);
   return result;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid::material {
 namespace {

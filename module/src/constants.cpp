@@ -9,10 +9,9 @@
 #include "domains.h"
 #include "entry_points.h"
 #include "frame.h"
-#include "material_tables.h"
+#include "material/tables.h"
 #include "minimum_dot.h"
 #include "plan.h"
-#include "transmittance.h"
 
 namespace pellucid {
 
@@ -266,34 +265,13 @@ shared::ShadowConstants shadowConstants(const FrameFacts& f, const PellucidShado
   return c;
 }
 
-shared::MaterialConstants materialConstants(const FrameFacts& f, const MaterialTables& tables) {
-  const PellucidMaterial& m = tables.material;
-  shared::MaterialConstants c{};
-  c.meta = {m.transmittanceModel, m.gaussianCount, m.thinWalled, 0};
-  const auto exponent = static_cast<float>(gaussianExponent(m.transmittanceModel));
-  const bool canGather = canBeGathered(m.transmittanceModel) && m.thinWalled == 0;
-  if (f.gathers || f.lights.ambient.intensity > 0) c.gather = tables.gather;
+shared::MaterialConstants materialConstants(const FrameFacts& f, const PellucidMaterial& m, shared::MaterialConstants c) {
+  if (!f.gathers && !(f.lights.ambient.intensity > 0)) c.gather = {};
+  if (!f.stages.lights) c.inverseReflectance.w = c.transmittance4.w = 0;  // of one thickness a pixel
   // Without diffusion nothing of it is corrected.
   if (f.diffusedCount(m) == 0) {
     c.gather.body = glm::vec4(0);
     c.gather.profile = glm::vec4(0, 0, 0, c.gather.profile.w);
-  }
-  // From other models the ambient light takes nothing from visible faces.
-  for (glm::vec4& reflectance : c.gather.reflectance)
-    if (!canGather) reflectance.x = 1;
-  if (f.stages.lights) {  // one thickness a pixel
-    c.inverseReflectance.w = static_cast<float>(1 / static_cast<double>(tables.halfThickness));
-    c.transmittance4.w = tables.opaqueThickness;
-  }
-  for (int channel = 0; channel < 3; ++channel) {
-    const std::array<float, 5> t = shaderParameters(m, channel);
-    c.transmittance[channel] = {t[0], t[1], t[2], t[3]};
-    c.transmittance4[channel] = t[4];
-    c.inverseReflectance[channel] = 1 / m.reflectance[channel];
-    for (uint32_t i = 0; i < m.gaussianCount; ++i) {
-      c.gaussianFalloff[i][channel] = exponent / m.gaussianVariance[channel][i];
-      c.gaussianWeight[i][channel] = m.gaussianWeight[channel][i];
-    }
   }
   return c;
 }
@@ -366,16 +344,13 @@ PellucidResult writeConstants(const FrameFacts& f, const PellucidPlan& plan, voi
   putLights(f, mapped);
   float reach = 0;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i) {
-    MaterialTables tables;
-    if (f.frame.options.materialTables)
-      std::memcpy(&tables, f.frame.options.materialTables[i].words, sizeof tables);
-    else
-      makeTables(f.material(i), &tables);
-    put(mapped, layout.materials + i * sizeof(shared::MaterialConstants), materialConstants(f, tables));
-    if (f.diffusedCount(tables.material) == 0) tables.kernel = {};
+    const PellucidMaterial& m = f.frame.materials[i];
+    MaterialTables tables = tablesOf(m);
+    if (f.gathers && m.thinWalled == 0)
+      reach = std::max(reach, gatherReach(tables.constants.gather, f.gatherSamples));
+    put(mapped, layout.materials + i * sizeof(shared::MaterialConstants), materialConstants(f, m, tables.constants));
+    if (f.diffusedCount(m) == 0) tables.kernel = {};
     put(mapped, layout.kernels + i * sizeof(shared::KernelConstants), tables.kernel);
-    if (f.gathers && tables.material.thinWalled == 0)
-      reach = std::max(reach, gatherReach(tables.gather, f.gatherSamples));
   }
   if (f.stages.diffusion) {
     put(mapped, layout.lists, blockLists(f, plan, reach));

@@ -3,7 +3,7 @@
 #include <array>
 #include <type_traits>
 
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid {
 namespace {

@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "entry_points.h"
-#include "pyramid_energy.h"
+#include "material/pyramid_energy.h"
 
 namespace pellucid {
 namespace {

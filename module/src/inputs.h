@@ -26,11 +26,8 @@ struct Inputs {
     return (frame.options.materialMask == 0 ? UINT32_MAX : frame.options.materialMask) >> frame.options.materialShift;
   }
 
-  // frame.materials[index]. A thin wall's T(d) is constant.
-  PellucidMaterial material(uint32_t index) const;
-  // As the diffusion takes it: without a profile where the diffusion is not among the features. Its passes
-  // add gathered light there, too.
-  PellucidMaterial diffused(uint32_t index) const;
+  // Gaussians as the diffusion takes them: none where the diffusion is not among the features. Its passes add gathered light there,
+  // too.
   uint32_t diffusedCount(const PellucidMaterial& material) const {
     return (frame.options.features & PELLUCID_FEATURE_DIFFUSION) != 0 ? material.gaussianCount : 0;
   }

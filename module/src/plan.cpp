@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "planner.h"
-#include "pyramid_energy.h"
-#include "transmittance.h"
+#include "material/pyramid_energy.h"
+#include "material/transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -50,7 +50,8 @@ Skips skipsOf(const FrameFacts& f) {
   if (f.frame.options.indirectDispatches != 0 && !f.stages.lists)
     skips.add("lists", f.stages.whyNoLists);
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    if (f.pixelsPerMm * deviationOf(f.diffused(i)) > levelDeviation(f.pyramid.coarsest))
+    if (const PellucidMaterial& m = f.frame.materials[i];
+        f.diffusedCount(m) > 0 && f.pixelsPerMm * deviationOf(m) > levelDeviation(f.pyramid.coarsest))
       skips.add("diffusion radius", "wider than the pyramid holds");
   return skips;
 }
@@ -63,7 +64,7 @@ uint32_t optionsOf(const FrameFacts& f) {
     options |= PELLUCID_USE_AMBIENT;
   bool thesis = f.thesis.angleModel != PELLUCID_ANGLE_NORMAL;
   for (uint32_t i = 0; i < f.frame.materialCount; ++i)
-    thesis = thesis || !canBeGathered(f.material(i).transmittanceModel);
+    thesis = thesis || !canBeGathered(modelOf(f.frame.materials[i]));
   return thesis ? options | PELLUCID_USE_THESIS : options;
 }
 

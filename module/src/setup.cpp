@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -18,7 +18,7 @@ const char* whyNot(const Inputs& inputs, bool solids) {
     return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
   if (!solids) return "every material is thin-walled";
   for (uint32_t i = 0; i < inputs.frame.materialCount; ++i)
-    if (!canBeGathered(inputs.material(i).transmittanceModel))
+    if (!canBeGathered(modelOf(inputs.frame.materials[i])))
       return "a material's transmittance model has no profile";
   return nullptr;
 }
@@ -80,10 +80,10 @@ Setup::Setup(const Inputs& inputs)
   pixelsPerMm = mmPerPixel > 0 ? 1 / mmPerPixel : 0;
   float shortestLength = std::numeric_limits<float>::infinity();
   for (uint32_t i = 0; i < frame.materialCount; ++i) {
-    const PellucidMaterial m = diffused(i);
+    const PellucidMaterial& m = frame.materials[i];
     (m.thinWalled != 0 ? thinWalls : solids) = true;
     if (m.thinWalled == 0) shortestLength = std::min(shortestLength, diffusionLength(m));
-    if (m.gaussianCount == 0) continue;
+    if (diffusedCount(m) == 0) continue;
     diffuses = true;
     widestDeviation = std::max(widestDeviation, pixelsPerMm * deviationOf(m));
   }

@@ -7,7 +7,7 @@
 #include "domains.h"
 #include "minimum_dot.h"
 #include "planner.h"
-#include "transmittance.h"
+#include "material/tables.h"
 
 namespace pellucid {
 namespace {
@@ -64,24 +64,6 @@ void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
     out.error("thesis.faceVector", "is ", t.faceVector[0], ", ", t.faceVector[1], ", ", t.faceVector[2],
               " and upAxis ", t.upAxis[0], ", ", t.upAxis[1], ", ", t.upAxis[2],
               "; must be finite, longer than 0 and not parallel");
-}
-
-void checkMaterial(const PellucidMaterial& m, uint32_t index, Findings& out) {
-  const auto field = [index](const char* name) { return Field("materials[", index, "].", name); };
-  checkDomains(m, field(""), out);
-  if (m.gaussianCount > PELLUCID_MAX_GAUSSIANS) return;
-  checkTransmittance(m, index, out);
-  for (int c = 0; c < 3; ++c) {
-    // Rounding of floats.
-    if (m.thinWalled != 0 && !(m.reflectance[c] + m.wallTransmittance[c] <= 1 + 1e-6f))
-      out.error(field("wallTransmittance"), "of channel ", c, " is ", m.wallTransmittance[c],
-                " with a reflectance of ", m.reflectance[c], "; more light leaves a thin wall than arrives");
-    float sum = 0;
-    for (uint32_t i = 0; i < m.gaussianCount; ++i) sum += m.gaussianWeight[c][i];
-    // 1e-3: the accuracy to which constant irradiance is promised to stay constant.
-    if (m.gaussianCount > 0 && !(std::abs(sum - 1) <= 1e-3f))
-      out.error(field("gaussianWeight"), "of channel ", c, " sums to ", sum, ", not 1");
-  }
 }
 
 void checkLightTables(const PellucidFrame& f, Findings& out) {
@@ -157,15 +139,9 @@ void checkFields(const Inputs& inputs, Findings& out) {
 }
 
 void checkMaterials(const Inputs& inputs, Findings& out) {
-  const PellucidFrame& f = inputs.frame;
-  for (uint32_t i = 0; i < f.materialCount; ++i) {
-    const PellucidMaterial material = inputs.material(i);
-    checkMaterial(material, i, out);
-    if (f.options.materialTables &&
-        std::memcmp(f.options.materialTables[i].words, &material, sizeof material) != 0)
-      out.error(Field("options.materialTables[", i, "]"), "is of another material than materials[", i,
-                "] (call pellucidMakeMaterialTables)");
-  }
+  for (uint32_t i = 0; i < inputs.frame.materialCount; ++i)
+    if (!hasTables(inputs.frame.materials[i]))
+      out.error(Field("materials[", i, "].tables"), "are not of the material's fields; call pellucidMakeMaterialTables after a change");
 }
 
 namespace {

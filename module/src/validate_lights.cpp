@@ -5,7 +5,7 @@
 #include "domains.h"
 #include "entry_points.h"
 #include "frame.h"
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid {
 namespace {
@@ -150,7 +150,7 @@ void warnOfTexels(const FrameFacts& facts, uint32_t index, Findings& out) {
   if (isPerspective(s)) return;
   const double side = texelSide(s) * static_cast<double>(f.metersPerUnit) * 1000;
   for (uint32_t i = 0; i < f.materialCount; ++i) {
-    const float length = diffusionLength(facts.material(i));
+    const float length = diffusionLength(facts.frame.materials[i]);
     if (!(length > 0) || !(side > static_cast<double>(kMostLengths * length))) continue;
     out.warning(Field("shadowMaps[", index, "].extent"), "makes a texel ", static_cast<float>(side),
                 " mm long, more than ", kMostLengths, " diffusion lengths of materials[", i, "], which are ",

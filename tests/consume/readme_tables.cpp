@@ -72,6 +72,7 @@ struct Example {
       material.reflectance[c] = material.gaussianVariance[c][0] = material.gaussianWeight[c][0] =
           material.radius[c] = 1;
     }
+    pellucidMakeMaterialTables(&material, nullptr, nullptr);
     light.direction[2] = 1;
     light.color[0] = light.intensity = 1;
     PellucidFrame& f = frame;

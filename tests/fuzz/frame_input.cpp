@@ -59,7 +59,8 @@ template <class Struct>
 void edit(std::span<Struct> array, uint8_t index, uint16_t word, uint32_t value) {
   if (array.empty()) return;
   auto* object = reinterpret_cast<unsigned char*>(&array[index % array.size()]);
-  std::memcpy(object + word % (sizeof(Struct) / 4) * 4, &value, 4);
+  constexpr size_t kWords = std::is_same_v<Struct, PellucidMaterial> ? offsetof(PellucidMaterial, tables) / 4 : sizeof(Struct) / 4;
+  std::memcpy(object + word % kWords * 4, &value, 4);
 }
 
 }  // namespace
@@ -72,7 +73,7 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   const test::Frame valid(1);
   frame = valid.frame;
   thesis_ = valid.thesis;
-  materials_.assign(countOf(header[0], 256), test::plainMaterial());
+  materials_.assign(countOf(header[0], 256), valid.material);
   const uint32_t lights = countOf(header[1], 340), maps = countOf(header[2], 340);
   maps_.assign(maps, valid.maps[0]);
   images_.assign(countOf(header[3], 680), test::Frame::view());
@@ -151,18 +152,9 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   // More light tables than there may be are refused before they are read.
   lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
   frame.options.lightTables = lightTables_.data();
-  // Tables of materials that are not valid, or shorter than the first, are another material's. Many materials
-  // always have tables: a material without tables costs each recording milliseconds.
-  const bool hasTables = header[4] & 64 || materials_.size() > kFew;
-  if (hasTables) {
-    materialTables_.resize(materials_.size());
-    for (size_t i = 0; i < materials_.size(); ++i)
-      if (i > 0 && std::memcmp(&materials_[i], &materials_[i - 1], sizeof materials_[i]) == 0)
-        materialTables_[i] = materialTables_[i - 1];
-      else
-        pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
-  }
-  frame.options.materialTables = hasTables ? materialTables_.data() : nullptr;
+  // Else the edits are refused at once, as the tables are of other fields.
+  if (header[4] & 64)
+    for (PellucidMaterial& material : materials_) pellucidMakeMaterialTables(&material, nullptr, nullptr);
 }
 
 }  // namespace pellucid::fuzz

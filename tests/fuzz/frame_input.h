@@ -31,7 +31,6 @@ private:
   std::vector<PellucidShadowMap> maps_;
   std::vector<PellucidImage> images_;
   std::vector<float> table_, ambient_;
-  std::vector<PellucidMaterialTables> materialTables_;
   std::vector<PellucidLightTable> lightTables_;
 };
 

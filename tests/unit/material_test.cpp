@@ -437,7 +437,6 @@ TEST(Material, BadInputNamesTheField) {
     EXPECT_FALSE(complaint.sentence.empty());
     EXPECT_EQ(material.transmittance[0][0], 0.0f);  // untouched
   }
-  PellucidMaterialDesc desc = described(1, 0.1, 1.4);
   PellucidMaterial material;
   EXPECT_EQ(pellucidCompileMaterial(nullptr, &material, nullptr, nullptr, nullptr),
             PELLUCID_ERROR_INVALID_ARGUMENT);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "pyramid_energy.h"
+#include "material/pyramid_energy.h"
 
 namespace pellucid {
 namespace {
@@ -28,7 +28,7 @@ void expectApart(uint32_t width, uint32_t height, Rect rect) {
     return Box{p.column, 0, p.rect.width, p.rect.height};
   };
   const auto inside = [&](const Box& b, uint32_t image) {
-    const Pyramid::Extent& size = pyramid.images[image];
+    const Extent& size = pyramid.images[image];
     return b.x >= 0 && b.y >= 0 && b.x + b.width <= static_cast<int32_t>(size.width) &&
            b.y + b.height <= static_cast<int32_t>(size.height);
   };

@@ -25,8 +25,8 @@ extern "C" {
 
 /* ---- What shaders evaluate ----------------------------------------------------------------- */
 
-/* Most Gaussians of a diffusion profile. */
-enum { PELLUCID_MAX_GAUSSIANS = 8 };
+/* Most Gaussians of a diffusion profile; words of a material's tables. */
+enum { PELLUCID_MAX_GAUSSIANS = 8, PELLUCID_MATERIAL_TABLE_WORDS = 3712 };
 
 /* Formula of T(d), the part of the flux into one face of a slab of thickness d (mm) that leaves by the other face.
  * PellucidMaterial::transmittance[channel] has the parameters, in the order of the comment. */
@@ -44,8 +44,8 @@ typedef enum PellucidTransmittanceModel {
   PELLUCID_TRANSMITTANCE_LINEAR = 4
 } PellucidTransmittanceModel;
 
-/* The constants of a material. pellucidCompileMaterial makes them from a description, or the caller fills the fields. Lengths are at most
- * 1e9 mm. */
+/* The constants of a material: plain data, which a file may keep. pellucidCompileMaterial makes them from a description. Or the caller
+ * fills the fields and calls pellucidMakeMaterialTables. Lengths are at most 1e9 mm. */
 typedef struct PellucidMaterial {
   /* PellucidTransmittanceModel. */
   uint32_t transmittanceModel;
@@ -69,7 +69,15 @@ typedef struct PellucidMaterial {
   uint32_t thinWalled;
   /* The part of the other face's irradiance that comes through a thin wall, 0..1; default 0. wallTransmittance + reflectance <= 1. */
   float wallTransmittance[3];
+  /* Private; pellucidCompileMaterial and pellucidMakeMaterialTables write it. Frames refuse tables of other fields or of another
+   * PELLUCID_HEADER_VERSION. */
+  uint32_t tables[PELLUCID_MATERIAL_TABLE_WORDS];
 } PellucidMaterial;
+
+/* Makes the tables of a material whose fields the caller filled or changed: what shaders read of its profile and its T(d). The target
+ * pellucid has this function. The call takes 20 us. `message` (optional) names field and value. On failure the tables do not change.
+ * Errors: INVALID_ARGUMENT. */
+PELLUCID_API PellucidResult pellucidMakeMaterialTables(PellucidMaterial* material, PellucidMessageFn message, void* messageUser);
 
 /* ---- Compiler ---------------------------------------------------------------------------------- */
 

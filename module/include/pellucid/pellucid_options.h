@@ -118,19 +118,6 @@ typedef struct PellucidLightTable {
   float factor[PELLUCID_LIGHT_TABLE_ENTRIES];
 } PellucidLightTable;
 
-/* Words of a material's tables. */
-enum { PELLUCID_MATERIAL_TABLE_WORDS = 3712 };
-
-/* Tables of a material: the shares of its profile by the pyramid's levels, and numbers of the gather. Plain data, made once a material. */
-typedef struct PellucidMaterialTables {
-  /* Private. */
-  uint32_t words[PELLUCID_MATERIAL_TABLE_WORDS];
-} PellucidMaterialTables;
-
-/* Writes the tables of a material, compiled or filled by hand. Errors: INVALID_ARGUMENT for a null pointer, or a material that
- * pellucidValidateFrame refuses. */
-PELLUCID_API PellucidResult pellucidMakeMaterialTables(const PellucidMaterial* material, PellucidMaterialTables* tables);
-
 /* Options of Whelan 2009. pellucid_thesis.h has the fields. */
 typedef struct PellucidThesisOptions PellucidThesisOptions;
 
@@ -191,9 +178,6 @@ typedef struct PellucidFrameOptions {
   /* 1 (default): passes run in blocks where the GPU finds material. The slice's buffer then has usage INDIRECT_BUFFER. 0: passes run over
    * the whole rect. */
   uint32_t indirectDispatches;
-  /* materialCount tables, in the order of frame.materials. NULL (default): each frame makes the tables, in 20 us of CPU time a
-   * material. */
-  const PellucidMaterialTables* materialTables;
   /* Required with PellucidContextOptions::descriptorPools 1; pellucidCreateDescriptorPool makes it. Recording resets the pool. Each
    * recording that the device has not finished needs its own pool. */
   VkDescriptorPool descriptorPool;

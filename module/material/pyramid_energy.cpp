@@ -1,10 +1,10 @@
-#include "pyramid_energy.h"
+#include "material/pyramid_energy.h"
 
 #include <array>
 #include <cmath>
 #include <iterator>
 
-#include "pyramid_energy_table.h"
+#include "material/pyramid_energy_table.h"
 #include "shared/pellucid_filters.h"
 
 namespace pellucid {

@@ -47,14 +47,19 @@ inline double transmittance(uint32_t model, const float* parameters, double d) {
 // Largest T(0): what fits in floats miss.
 constexpr double kMostTransmittance = 1.001;
 
-// Refuses parameters that the model of materials[index] cannot have.
-inline void checkTransmittance(const PellucidMaterial& m, uint32_t index, Findings& out) {
+// A thin wall's T(d) is constant: EXP2 with rates 0.
+inline uint32_t modelOf(const PellucidMaterial& m) {
+  return m.thinWalled != 0 ? static_cast<uint32_t>(PELLUCID_TRANSMITTANCE_EXP2) : m.transmittanceModel;
+}
+
+// Refuses parameters that the model cannot have.
+inline void checkTransmittance(const PellucidMaterial& m, Findings& out) {
+  if (m.thinWalled != 0) return;
   const bool gaussians = m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS ||
                          m.transmittanceModel == PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
   if (gaussians && m.gaussianCount == 0)
-    out.error(Field("materials[", index, "].gaussianCount"),
-              "is 0, but the transmittance model needs Gaussians");
-  const Field field("materials[", index, "].transmittance");
+    out.error("gaussianCount", "is 0, but the transmittance model needs Gaussians");
+  constexpr const char* field = "transmittance";
   for (int c = 0; c < 3; ++c) {
     const float(&t)[5] = m.transmittance[c];
     if (m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2 && !falls(t))
@@ -76,6 +81,7 @@ inline void checkTransmittance(const PellucidMaterial& m, uint32_t index, Findin
 
 // The parameters as shaders read them: LINEAR has 1 / dmax, so that they do not divide.
 inline std::array<float, 5> shaderParameters(const PellucidMaterial& m, int channel) {
+  if (m.thinWalled != 0) return {m.wallTransmittance[channel], 0, 0, 0, 0};
   const float(&t)[5] = m.transmittance[channel];
   // 1e-30: the inverse is finite.
   const bool linear = m.transmittanceModel == PELLUCID_TRANSMITTANCE_LINEAR;
@@ -143,6 +149,7 @@ inline double opaqueThickness(const PellucidMaterial& m) {
 // The diffusion length 1 / kappa, in mm: the depth over which light falls to 1/e. Mean of the channels; 0 where
 // T's model has no rate.
 inline float diffusionLength(const PellucidMaterial& m) {
+  if (m.thinWalled != 0) return 0;
   float sum = 0;
   for (const float(&t)[5] : m.transmittance) {
     float rate = 0;

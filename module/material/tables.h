@@ -1,19 +1,28 @@
-// All that recordings take from a material alone. Pure.
+// All that shaders read of a material alone, as PellucidMaterial::tables holds it. Pure.
 #pragma once
+
+#include <cstring>
 
 #include "pellucid/pellucid.h"
 #include "shared/pellucid_shared.h"
 
 namespace pellucid {
 
-// As PellucidMaterialTables holds it.
 struct MaterialTables {
-  PellucidMaterial material;  // that it was made from, as Inputs::material has it
-  float halfThickness, opaqueThickness;
-  shared::GatherConstants gather;  // zeros for models without a gather
+  uint64_t fingerprint;  // of the fields that the tables were made from
+  shared::MaterialConstants constants;
   shared::KernelConstants kernel;
 };
-static_assert(sizeof(MaterialTables) <= sizeof(PellucidMaterialTables));
+static_assert(sizeof(MaterialTables) <= sizeof(PellucidMaterial::tables));
+
+inline MaterialTables tablesOf(const PellucidMaterial& material) {
+  MaterialTables tables;
+  std::memcpy(&tables, material.tables, sizeof tables);
+  return tables;
+}
+
+// The tables are of the material's fields.
+bool hasTables(const PellucidMaterial& material);
 
 // Constants of the gather for one material, whose transmittance model must be one of canBeGathered (docs/how-it-works.md).
 shared::GatherConstants gatherConstants(const PellucidMaterial& material);
@@ -24,8 +33,5 @@ float gatherReach(const shared::GatherConstants& gather, uint32_t samples);
 // The diffusion profile as the pyramid's passes read it. All zeros (the pixel keeps everything) for a material
 // without Gaussians.
 shared::KernelConstants kernelConstants(const PellucidMaterial& material);
-
-// The material has passed checkMaterials.
-void makeTables(const PellucidMaterial& material, MaterialTables* tables);
 
 }  // namespace pellucid

@@ -1,10 +1,10 @@
 // A material's diffusion profile as the pyramid's passes read it.
-#include "material_tables.h"
+#include "material/tables.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pyramid_energy.h"
+#include "material/pyramid_energy.h"
 #include "shared/pellucid_filters.h"
 
 namespace pellucid {

@@ -1,5 +1,5 @@
 // A material's constants for the light-space gather (docs/how-it-works.md). Pure.
-#include "material_tables.h"
+#include "material/tables.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <glm/packing.hpp>
 #include <numbers>
 
-#include "transmittance.h"
+#include "material/transmittance.h"
 
 namespace pellucid {
 namespace {
