@@ -33,7 +33,7 @@ inline PellucidMaterial plainMaterial() {
 struct Frame {
   PellucidFrame frame;
   PellucidThesisOptions thesis;
-  mutable PellucidMaterial material = plainMaterial();  // whose tables follow its fields
+  PellucidMaterial material = plainMaterial();
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> maps;
   std::vector<PellucidImage> images;
@@ -62,8 +62,8 @@ struct Frame {
       lights.push_back(light(i, 1));
     }
     if (shadowImages == 0) lights.push_back(light(0, 0));
-    tables();
     use();
+    tables();
   }
   Frame(const Frame&) = delete;
 
@@ -79,15 +79,19 @@ struct Frame {
     frame.shadowImages = images.data();
   }
 
-  // Messages of the material's tables, after a change to its fields.
+  // Makes the tables of all materials, after a change to their fields; the messages of those that have wrong values.
   std::string tables() const {
     std::string text;
-    pellucidMakeMaterialTables(
-        &material,
-        [](void* user, PellucidSeverity, const char* field, const char* message) {
-          *static_cast<std::string*>(user) += "materials[0]." + std::string(field) + " " + message + "\n";
-        },
-        &text);
+    for (uint32_t i = 0; frame.materials && frame.materialCount <= 255 && i < frame.materialCount; ++i) {
+      std::string wrong;
+      pellucidMakeMaterialTables(
+          const_cast<PellucidMaterial*>(&frame.materials[i]),
+          [](void* user, PellucidSeverity, const char* field, const char* message) {
+            *static_cast<std::string*>(user) += std::string(field) + " " + message + "\n";
+          },
+          &wrong);
+      if (!wrong.empty()) text += "materials[" + std::to_string(i) + "]." + wrong;
+    }
     return text;
   }
 

@@ -282,7 +282,9 @@ TYPED_TEST(Domains, EveryIntegerOfTheHeaderHasADomainOrARule) {
   for (const IntegerRule& rule : kIntegerRules)
     if (std::string(rule.structName) == nameOf<TypeParam>())
       known.insert(std::string(rule.field).substr(0, std::string(rule.field).find('[')));
-  EXPECT_EQ(known, declared("uint32_t", nameOf<TypeParam>()));
+  std::set<std::string> fields = declared("uint32_t", nameOf<TypeParam>());
+  fields.erase("tables");  // no number, but all that shaders read
+  EXPECT_EQ(known, fields);
 }
 
 // Each image in each layout that shaders cannot read, and the written ones in all but GENERAL.
