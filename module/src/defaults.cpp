@@ -8,7 +8,7 @@ namespace pellucid {
   (offsetof(Struct, field) + sizeof(static_cast<Struct*>(nullptr)->field) == sizeof(Struct))
 static_assert(ENDS_WITH(PellucidFrame, options.motionScale));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
-static_assert(ENDS_WITH(PellucidThesisOptions, minimumDotTable));
+static_assert(ENDS_WITH(PellucidThesisOptions, objectCenter));
 static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
 #undef ENDS_WITH
 
@@ -31,8 +31,6 @@ PellucidThesisOptions defaultThesisOptions() {
   PellucidThesisOptions options{};
   options.structSize = sizeof options;
   for (float& factor : options.transmittanceFilter) factor = 1;
-  options.faceVector[2] = 1;
-  options.upAxis[1] = 1;
   return options;
 }
 

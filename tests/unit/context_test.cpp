@@ -230,7 +230,6 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
 // A plan of a valid frame and a frame that is not: its constants are refused before what is not there is
 // read.
 TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
-  static const float table[9] = {};
   const std::pair<const char*, void (*)(Frame&)> damages[] = {
       {"NULL", [](Frame& f) { f.frame.materials = nullptr; }},
       {"NULL", [](Frame& f) { f.frame.lights = nullptr; }},
@@ -241,15 +240,9 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
        [](Frame& f) {
          f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
          f.frame.imageExtent[0] = 0;
-       }},
-      // More entries than there are, or than 32 bits count.
-      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 40000; }},
-      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 0x80000001u; }}};
+       }}};
   for (const auto& [words, damage] : damages) {
     CompleteFrame f;
-    f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-    f.thesis.minimumDotTableSize = 3;
-    f.thesis.minimumDotTable = table;
     ASSERT_EQ(f.problems(), "");
     const PellucidPlan plan = f.plan();
     damage(f);

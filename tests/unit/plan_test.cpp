@@ -302,7 +302,6 @@ TEST(Plan, FramesThatCannotBeGatheredTakeOneThickness) {
       {"mark bit", [](Frame& f) { f.thesis.materialMarkBit = 128; }},
       {"angle", [](Frame& f) { f.thesis.angleModel = PELLUCID_ANGLE_COSINE; }},
       {"view", [](Frame& f) { f.thesis.constantViewDirection = 1; }},
-      {"minimum dot", [](Frame& f) { f.thesis.minimumDot = -0.1f; }},
       {"thickest", [](Frame& f) { f.thesis.maximumThickness = 10; }},
       {"model", [](Frame& f) {
          f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;

@@ -58,7 +58,7 @@ std::string errorsOf(const PellucidFrame& frame) {
 
 // Where the fields begin that may be missing, as the headers say.
 constexpr size_t kLeastFrame = offsetof(PellucidFrame, options);
-constexpr size_t kLeastThesis = 2 * sizeof(uint32_t);  // no struct that holds a pointer is shorter
+constexpr size_t kLeastThesis = offsetof(PellucidThesisOptions, angleModel);
 constexpr size_t kLeastMaterial = offsetof(PellucidMaterial, burleyDistance);
 constexpr size_t kLeastDesc = offsetof(PellucidContextDesc, options);
 
@@ -67,7 +67,6 @@ struct Unusual : Frame {
   Unusual() : Frame(2) {
     frame.options.debugView = PELLUCID_DEBUG_NONE;
     thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
-    thesis.minimumDot = -0.5f;
     thesis.maximumThickness = 3;
     thesis.transmittanceFilter[1] = 0.25f;
     frame.options.gatherSamples = 0;
@@ -168,11 +167,11 @@ TEST(StructSize, SizesOfNoVersionAreRefused) {
   }
   PellucidThesisOptions thesis;
   pellucidInitThesisOptions(&thesis);
-  thesis.structSize = 4;
+  thesis.structSize = 3;
   PellucidFrame frame = f.frame;
   frame.options.thesis = &thesis;
   EXPECT_EQ(resultOf(frame), "PELLUCID_ERROR_VERSION");
-  EXPECT_NE(errorsOf(frame).find("thesis.structSize is 4"), std::string::npos) << errorsOf(frame);
+  EXPECT_NE(errorsOf(frame).find("thesis.structSize is 3"), std::string::npos) << errorsOf(frame);
 }
 
 // The defaults of this library's fields do not run over a shorter struct of the caller's.

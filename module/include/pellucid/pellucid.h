@@ -113,6 +113,9 @@ typedef struct PellucidLight {
   /* Falloff of point and spot lights: indices into options.lightTables plus 1; 0 (default): no table. angleTable has factors by the angle
    * from `direction`. distanceTable has factors by distance. */
   uint32_t angleTable, distanceTable;
+  /* The largest cosine between the directions to eye and light for which light comes through, -1..0; default 0. -1: no light comes
+   * through. Only thesis->angleModel MINIMUM_DOT and thesis->prescaleAngle read it. */
+  float minimumDot;
 } PellucidLight;
 
 /* Most shadow maps of a light. */

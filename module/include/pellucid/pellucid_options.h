@@ -162,7 +162,7 @@ typedef struct PellucidFrameOptions {
 
   /* Samples of the shadow map by each probe, a multiple of 4 up to 64; default 8. More samples lower the noise of thin parts. 0: one
    * light-space thickness a pixel. Some frames cannot be gathered, as plan.skips says. Causes are a solid of another model than EXP2 or
-   * SINH_EXP, cameraThickness 1, and five options of thesis: angleModel, constantViewDirection, minimumDot, maximumThickness and
+   * SINH_EXP, cameraThickness 1, and four options of thesis: angleModel, constantViewDirection, maximumThickness and
    * materialMarkBit. */
   uint32_t gatherSamples;
   /* Pixels a side of a probe's cell: 1, 2 or 4. 0 (default): 4 in images of more than 2^20 pixels, 2 in images of more than 2^19
