@@ -66,10 +66,6 @@ PellucidResult createLayouts(PellucidContext& context, Findings& out);
 // Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
 PellucidResult createPipelines(PellucidContext& context, std::bitset<kMostPasses> wanted, Findings& out);
 
-// SPIR-V for devices that write no storage image without a format: gives the storage image that has none one
-// of 16 or 32 bits a channel, in place.
-void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide);
-
 // Refuses views that cannot be recorded. Errors go to the context's message; `named`: with the view's index
 // before the field.
 PellucidResult checkViews(const PellucidContext& context, std::span<const PellucidView> views, bool named);
