@@ -9,7 +9,7 @@ namespace pellucid {
 static_assert(ENDS_WITH(PellucidFrame, options.motionScale));
 static_assert(ENDS_WITH(PellucidMaterial, wallTransmittance));
 static_assert(ENDS_WITH(PellucidThesisOptions, objectCenter));
-static_assert(ENDS_WITH(PellucidContextDesc, options.parallelUser));
+static_assert(ENDS_WITH(PellucidContextDesc, options.allocator));
 #undef ENDS_WITH
 
 PellucidFrame defaultFrame() {

@@ -54,13 +54,6 @@ VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
 }
 
-// One pipeline for each thread that the caller lends.
-struct PipelineJobs {
-  PellucidContext& context;
-  std::array<uint32_t, kMostPasses> pipelines{};  // to make
-  std::array<VkResult, kMostPasses> results{};
-};
-
 VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
   const PellucidContextDesc& desc = c.desc;
   const Pass& pass = *allPasses()[index];
@@ -111,30 +104,17 @@ PellucidResult createLayouts(PellucidContext& c, Findings& out) {
   return PELLUCID_OK;
 }
 
-PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
-  const PellucidContextDesc& desc = c.desc;
-  PipelineJobs jobs{c};
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (wanted[i] && !c.pipelines[i] &&
-        (desc.options.uses == 0 || (allPasses()[i]->uses & ~desc.options.uses) == 0))
-      jobs.pipelines[count++] = i;
-  if (count == 0) return PELLUCID_OK;
-  const auto job = [](void* data, uint32_t i) {
-    auto& all = *static_cast<PipelineJobs*>(data);
-    const uint32_t pipeline = all.pipelines[i];
-    all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
-  };
-  if (desc.options.parallelFor)
-    desc.options.parallelFor(desc.options.parallelUser, count, job, &jobs);
-  else
-    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
-  for (uint32_t i = 0; i < count; ++i)
-    if (jobs.results[i] != VK_SUCCESS) {
+PellucidResult createPipelines(PellucidContext& c, Findings& out) {
+  const uint32_t uses = c.desc.options.uses;
+  for (uint32_t i = 0; i < allPasses().size(); ++i) {
+    const Pass& pass = *allPasses()[i];
+    if (uses != 0 && (pass.uses & ~uses) != 0) continue;
+    if (const VkResult result = createPipeline(c, i, &c.pipelines[i]); result != VK_SUCCESS) {
       char call[64];
-      Text(call, sizeof call) << "creating pipeline " << allPasses()[jobs.pipelines[i]]->pipeline;
-      return vulkanError(out, call, jobs.results[i]);
+      Text(call, sizeof call) << "creating pipeline " << pass.pipeline;
+      return vulkanError(out, call, result);
     }
+  }
   return PELLUCID_OK;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "context.h"
 #include "entry_points.h"
 #include "frame_fixture.h"
 #include "shared/pellucid_shared.h"

@@ -71,7 +71,8 @@ PELLUCID_API void pellucidInitContextDescSized(PellucidContextDesc* desc, size_t
 /* Writes the defaults. */
 static inline void pellucidInitContextDesc(PellucidContextDesc* d) { pellucidInitContextDescSized(d, sizeof *d); }
 
-/* Checks the device's limits and makes pipelines. Any thread may use the context. On failure *context is NULL.
+/* Checks the device's limits and makes the pipelines of options.uses, on the calling thread. Any thread may use the context. On failure
+ * *context is NULL.
  * Errors: VERSION, INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
@@ -292,7 +293,7 @@ enum {
  * - State: recording changes pipeline and sets of the compute bind point, and 16 bytes of push constants.
  * - Frame: recording reads only images and descriptor pool of `frame`. Both may differ from those of pellucidBuildPlan. A plan of two
  *   views of output and irradiance refuses one view.
- * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a pipeline that the context lacks, or a bad slice;
+ * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a use that the context lacks, or a bad slice;
  *   BUFFER_TOO_SMALL; OUT_OF_MEMORY and VULKAN of the descriptor pool. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                const PellucidPlan* plan, const PellucidFrame* frame,

@@ -118,12 +118,6 @@ struct PellucidPlan {
  * number. 0: the plan has no such dispatch. */
 PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
 
-/* Makes the pipelines that the plan needs and the context lacks, for a context with options.deferPipelines 1. Pipelines outside of
- * options.uses are not made. options.pipelineCache and parallelFor must still exist. No other thread may use the context at the same
- * time. On failure the context's `message` gets a sentence, and finished pipelines stay. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY,
- * VULKAN. */
-PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
-
 /* Makes a pool for PellucidFrameOptions::descriptorPool, with room for the recording of any plan. The caller destroys the pool by
  * vkDestroyDescriptorPool with the context's options.allocator. On failure *pool is NULL, and the context's `message` gets a sentence.
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY, VULKAN. */
