@@ -111,13 +111,10 @@ int createContext(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpuStart = std::clock();  // of all threads
   {
-    const Context context(
-        device,
-        [&](PellucidContextDesc& desc) {
-          desc.options.pipelineCache = cache;
-          desc.options.uses = options.uses;
-        },
-        Compile::AtCreation);
+    const Context context(device, [&](PellucidContextDesc& desc) {
+      desc.options.pipelineCache = cache;
+      desc.options.uses = options.uses;
+    });
     const double cpu = 1e6 * static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC;
     const double wall =
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();

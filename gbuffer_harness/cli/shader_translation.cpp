@@ -163,8 +163,8 @@ std::vector<PipelineShader> pipelineShaders() {
   std::vector<PipelineShader> shaders;
   for (uint32_t i = 0; i < pellucidGetPipelineCount(); ++i) {
     PellucidShader plain, array;
-    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D, &plain);
-    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D_ARRAY, &array);
+    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &plain);
+    pellucidGetShader(i, VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_UNDEFINED, nullptr, &array);
     const std::string name = pellucidPipelineName(i);
     const bool same = plain.words == array.words;
     shaders.push_back({name, same ? "any" : "2D", i, plain});

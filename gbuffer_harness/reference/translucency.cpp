@@ -54,17 +54,23 @@ double bySphere(const std::vector<float>& table, const glm::dvec3& local) {
 }  // namespace
 
 double minimumDot(const TranslucencySettings& s, const Light& light) {
-  const bool azimuth = s.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-  if (!azimuth && s.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return double(s.minimumDot);
+  if (!s.hasMinimumDotTable()) return double(s.minimumDot);
+  const bool azimuth = s.angleModel == kMinimumDotAzimuth;
   const auto side = static_cast<std::size_t>(std::lround(std::sqrt(double(s.minimumDotTable.size()))));
   if (s.minimumDotTable.empty() || (!azimuth && (side < 3 || side * side != s.minimumDotTable.size())))
     throw InputError("", "minimumDotTable",
                      std::to_string(s.minimumDotTable.size()) + " entries do not fit the angle model");
+  for (const float m : s.minimumDotTable)
+    if (!(m >= -1 && m <= 0)) throw InputError("", "minimumDotTable", "holds " + std::to_string(m) + ", outside [-1, 0]");
   glm::dvec3 toLight = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -vec(light.direction)
                                                                 : vec(light.position) - vec(s.objectCenter);
   if (glm::length(toLight) > 0) toLight = glm::normalize(toLight);
   const glm::dvec3 up = glm::normalize(vec(s.upAxis));
-  const glm::dvec3 sideways = glm::normalize(glm::cross(up, vec(s.faceVector)));
+  const glm::dvec3 across = glm::cross(up, glm::normalize(vec(s.faceVector)));
+  // Nearer to each other than this, float rounding would decide where the face looks.
+  if (!(glm::length(across) > 1e-4))
+    throw InputError("", "faceVector and upAxis", "must be finite, longer than 0 and not parallel");
+  const glm::dvec3 sideways = glm::normalize(across);
   const glm::dvec3 ahead = glm::cross(sideways, up);
   const glm::dvec3 local(glm::dot(toLight, sideways), glm::dot(toLight, up), glm::dot(toLight, ahead));
   return azimuth ? byAzimuth(s.minimumDotTable, local.x, local.z) : bySphere(s.minimumDotTable, local);
@@ -103,7 +109,7 @@ double angleFactor(const TranslucencySettings& settings, double x, double minimu
     x = (begin + x) / (begin + 1);
     if (x <= 0) return 0;
   }
-  switch (settings.angleModel) {
+  switch (settings.moduleModel()) {
     case PELLUCID_ANGLE_INVERSE_COSINE:
       return std::max(0.0, 1 - std::acos(x) * 2 / std::numbers::pi);
     case PELLUCID_ANGLE_POLYNOMIAL: {
@@ -113,8 +119,6 @@ double angleFactor(const TranslucencySettings& settings, double x, double minimu
       return x > 0 ? std::clamp(value, 0.0, 1.0) : 0.0;
     }
     case PELLUCID_ANGLE_MINIMUM_DOT:
-    case PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH:
-    case PELLUCID_ANGLE_MINIMUM_DOT_SPHERE:
       return m > -1 ? std::clamp((m + x) / (m + 1), 0.0, 1.0) : 0.0;
     default:
       return std::max(0.0, x);

@@ -14,7 +14,8 @@
 namespace pellucid::harness::reference {
 
 // Whelan 2009, 4.6.2: the minimum dot of a light, from a table by where the light is around the object;
-// settings.minimumDot for models without a table. Throws InputError when the table does not fit the model.
+// settings.minimumDot for models without a table. Throws InputError for a table that does not fit the model, or holds other values, and
+// for a face along the up axis.
 double minimumDot(const TranslucencySettings& settings, const Light& light);
 
 // Light that one pixel receives from behind. Thickness in mm; irradiance and exitance RGB, summed over lights.

@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/far_origin.h"
 #include "pellucid/pellucid_material.h"
+#include "reference/translucency.h"
 #include "replay/exposure.h"
 
 namespace pellucid::harness {
@@ -91,19 +92,6 @@ float nearestLine(const PellucidMaterial& m, uint32_t channel) {
     }
   }
   return static_cast<float>(bestLength);
-}
-
-// Options that the table of settings cannot copy: the frame holds them relative to its origin or as an array.
-void addThesisOptions(const TranslucencySettings& t, const Origin& origin, FrameData& data) {
-  PellucidThesisOptions& o = data.thesis;
-  data.minimumDotTable = t.minimumDotTable;
-  o.minimumDotTable = data.minimumDotTable.data();
-  const auto entries = static_cast<uint32_t>(data.minimumDotTable.size());
-  // Validation refuses a map that is not square by the size that is left.
-  const auto side = static_cast<uint32_t>(std::lround(std::sqrt(entries)));
-  const bool sphere = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-  o.minimumDotTableSize = !sphere ? entries : side * side == entries ? side : 0;
-  for (std::size_t i = 0; i < 3; ++i) o.objectCenter[i] = static_cast<float>(t.objectCenter[i] - origin[i]);
 }
 
 // Views of different images that are never dereferenced: planning and validation only ask whether a view is
@@ -209,14 +197,19 @@ void makeFrame(const Capture& capture, const FrameShape& shape,
                FrameData& data) {
   data.materials = withTransmittance(materials, settings.transmittance);
   const Origin origin = worldOrigin(capture);
-  for (const Light& light : capture.lights) addLight(light, origin, shape, data);
+  for (const Light& light : capture.lights) {
+    addLight(light, origin, shape, data);
+    data.lights.back().minimumDot = static_cast<float>(reference::minimumDot(settings.translucency, light));
+  }
   data.shadowImages.resize(shape.shadowImages);
 
   PellucidFrame& f = data.frame;
   pellucidInitFrame(&f);
   pellucidInitThesisOptions(&data.thesis);
   setOptions(settings, f.options, data.thesis);
-  addThesisOptions(settings.translucency, origin, data);
+  data.thesis.angleModel = settings.translucency.moduleModel();
+  for (std::size_t i = 0; i < 3; ++i)
+    data.thesis.objectCenter[i] = static_cast<float>(static_cast<double>(settings.translucency.objectCenter[i]) - origin[i]);
   f.options.thesis = &data.thesis;
   f.imageExtent[0] = static_cast<uint32_t>(capture.width);
   f.imageExtent[1] = static_cast<uint32_t>(capture.height);

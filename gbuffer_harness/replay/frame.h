@@ -27,7 +27,6 @@ struct FrameData {
   std::vector<PellucidLight> lights;
   std::vector<PellucidShadowMap> shadowMaps;
   std::vector<PellucidImage> shadowImages;
-  std::vector<float> minimumDotTable;
   std::vector<float> ambient;
   std::vector<PellucidLightTable> lightTables;
 

@@ -7,7 +7,6 @@
 
 #include "capture/shadow_images.h"
 #include "common/error.h"
-#include "common/parallel.h"
 #include "common/progress.h"
 #include "pellucid/pellucid_views.h"
 #include "replay/exposure.h"
@@ -154,29 +153,18 @@ PellucidContextDesc contextDesc(const Device& device) {
   return desc;
 }
 
-Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change, Compile compile) {
+Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>& change) {
   PellucidContextDesc desc = contextDesc(device);
   desc.message = &appendError;
   desc.messageUser = &message_;
   if (device.writesWithoutFormat()) desc.options.outputFormat = VK_FORMAT_UNDEFINED;
-  // Called where there are pipelines to make.
-  desc.options.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
-    const ProgressLine progress("compiling shaders");
-    parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
-  };
   if (change) change(desc);
-  desc.options.deferPipelines = compile == Compile::WhenPlanned;
+  const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);
   if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
 }
 
 Context::~Context() { pellucidDestroyContext(context_); }
-
-void Context::prepare(const PellucidPlan& plan) const {
-  const std::scoped_lock lock(mutex_);
-  const PellucidResult result = pellucidCreatePipelines(context_, &plan);
-  if (result != PELLUCID_OK) throw DeviceError(std::string(pellucidResultName(result)) + ": " + message_);
-}
 
 const Context& Contexts::of(const Capture& capture) {
   const bool arrays = hasLayers(capture.lights);
@@ -218,7 +206,6 @@ void FrameRun::plan(const PellucidPlan* previous) {
   const PellucidFrame& frame = data_.frame;
   requireOk(pellucidValidateFrame(&frame, nullptr, nullptr), frame, name_);
   requireOk(pellucidBuildPlan(&frame, previous, plan_.get()), frame, name_);
-  context_.prepare(*plan_);
   constants_ =
       std::make_unique<HostBuffer>(device_, plan_->constantsSize,
                                    VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |

@@ -4,7 +4,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -21,17 +20,12 @@ namespace pellucid::harness {
 // The module's defaults for a context on the device.
 PellucidContextDesc contextDesc(const Device& device);
 
-// When drivers compile a context's pipelines: those of a plan when a frame is planned, or those of
-// desc.options.uses when the context is made, as engines have it.
-enum class Compile { WhenPlanned, AtCreation };
-
 // A module context on a device.
 class Context {
 public:
   // Throws DeviceError with the module's sentence. `change`: of what the context is made for, which is
   // everything.
-  explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {},
-                   Compile compile = Compile::WhenPlanned);
+  explicit Context(Device& device, const std::function<void(PellucidContextDesc&)>& change = {});
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -39,12 +33,7 @@ public:
   const PellucidContext* handle() const { return context_; }
   const std::string& message() const { return message_; }  // the module's errors since creation
 
-  // Before the plan is recorded, while no other thread records. Throws DeviceError if a pipeline cannot be
-  // made.
-  void prepare(const PellucidPlan& plan) const;
-
 private:
-  mutable std::mutex mutex_;  // of pipelines that are made for plans
   PellucidContext* context_ = nullptr;
   std::string message_;
 };

@@ -218,12 +218,11 @@ std::vector<Setting> makeTable() {
                                   {"inverse-cosine", PELLUCID_ANGLE_INVERSE_COSINE},
                                   {"polynomial", PELLUCID_ANGLE_POLYNOMIAL},
                                   {"minimum-dot", PELLUCID_ANGLE_MINIMUM_DOT},
-                                  {"minimum-dot-azimuth", PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH},
-                                  {"minimum-dot-sphere", PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}})
+                                  {"minimum-dot-azimuth", kMinimumDotAzimuth},
+                                  {"minimum-dot-sphere", kMinimumDotSphere}})
           .panel(angle, "model")
           .range(0, 4)
-          .where(oneThickness)
-          .frame(THESIS(angleModel)),
+          .where(oneThickness),
       polynomial().panel(angle, "c0 c1 c2 c3").frame(THESIS(anglePolynomial)),
       real("minimum-dot",
            "cosine above which nothing comes through, of angle=minimum-dot and prescale=1, -1..0",
@@ -233,8 +232,7 @@ std::vector<Setting> makeTable() {
           .where([](const auto& s) {
             return angleIs(s, PELLUCID_ANGLE_MINIMUM_DOT) ||
                    (oneThickness(s) && s.translucency.prescaleAngle);
-          })
-          .frame(THESIS(minimumDot)),
+          }),
       minimumDots(),
       flag("prescale", "cosine, inverse-cosine and polynomial begin at minimum-dot",
            FIELD(translucency.prescaleAngle))
@@ -247,10 +245,8 @@ std::vector<Setting> makeTable() {
           .panel(angle, "view ray")
           .where(oneThickness)
           .frame(THESIS(constantViewDirection)),
-      real("face", "x,y,z the object looks along, world; default 0,0,1", FIELD(translucency.faceVector))
-          .frame(THESIS(faceVector)),
-      real("up", "x,y,z of the object, world; default 0,1,0", FIELD(translucency.upAxis))
-          .frame(THESIS(upAxis)),
+      real("face", "x,y,z the object looks along, world; default 0,0,1", FIELD(translucency.faceVector)),
+      real("up", "x,y,z of the object, world; default 0,1,0", FIELD(translucency.upAxis)),
       real("center", "x,y,z of the object, world", FIELD(translucency.objectCenter)),
       whole("mark-bit", "of material values without translucency, a power of two; 0 (default): none",
             FIELD(translucency.materialMarkBit))

@@ -404,7 +404,7 @@ std::optional<Worst> uses(Subject& s) {
   constexpr const char* kNames[] = {"TRANSLUCENCY", "GATHER", "DIFFUSION", "REUSE", "DEBUG_VIEWS", "THIN_WALLS", "AMBIENT", "THESIS"};
   constexpr int kCount = static_cast<int>(std::size(kNames));
   Random random = s.random("uses");
-  if (!random.chance(0.3) || s.frame.settings.inPlace()) return {};
+  if (!random.chance(0.1) || s.frame.settings.inPlace()) return {};
   Random set(s.frame.seed, static_cast<std::uint64_t>(random.whole(0, 7)));
   std::uint32_t left = 0;
   for (int i = set.whole(1, 3); i > 0; --i) left |= 1u << set.whole(0, kCount - 1);
@@ -603,7 +603,7 @@ std::span<const Check> checks() {
       {"rects", "two parts take the images that the whole image needs, and have its bits where they share no edge",
        "frames without a debug view; bits: one thickness a pixel", 0, 0, kBits, &rects},
       {"uses", "a context that leaves out some PellucidUse refuses the frame by the name of one, or has its bits",
-       "three in ten whose output is not the irradiance", 0, 0, kBits, &uses},
+       "one in ten whose output is not the irradiance", 0, 0, kBits, &uses},
       {"map-factor", "clipFromWorld times powers of two changes no bit", "frames with shadow maps", 0, 0, kBits, &mapFactor},
       {"alpha", "alpha has the irradiance's bits, or is not finite as there", "all", 0, 0, kBits, &alpha},
       {"constant", "constant irradiance comes back from the diffusion",

@@ -22,23 +22,21 @@ BurleyMaterial burley(double distance) { return {{distance, distance / 1.4, dist
 
 std::vector<float> minimumDots(Random& random, PellucidAngleModel model) {
   const int side = random.whole(3, 16);
-  std::vector<float> table(static_cast<std::size_t>(model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE ? side * side
-                                                    : random.chance(0.5)                       ? 36
-                                                                         : random.whole(1, 360)));
+  std::vector<float> table(static_cast<std::size_t>(model == kMinimumDotSphere ? side * side
+                                                    : random.chance(0.5)     ? 36
+                                                                             : random.whole(1, 360)));
   for (float& m : table) m = static_cast<float>(random.real(-1, 0));
   return table;
 }
 
 void randomAngles(Random& random, TranslucencySettings& t) {
   t.angleModel = random.of({PELLUCID_ANGLE_COSINE, PELLUCID_ANGLE_INVERSE_COSINE, PELLUCID_ANGLE_POLYNOMIAL,
-                            PELLUCID_ANGLE_MINIMUM_DOT, PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH,
-                            PELLUCID_ANGLE_MINIMUM_DOT_SPHERE});
+                            PELLUCID_ANGLE_MINIMUM_DOT, kMinimumDotAzimuth, kMinimumDotSphere});
   for (float& c : t.anglePolynomial) c = static_cast<float>(random.real(-2, 2));
   t.minimumDot = random.chance(0.3) ? random.of({0.0f, -1.0f}) : static_cast<float>(random.real(-1, 0));
   t.prescaleAngle = random.chance(0.5);
   t.constantViewDirection = random.chance(0.3);
-  if (t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH || t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE)
-    t.minimumDotTable = minimumDots(random, t.angleModel);
+  if (t.hasMinimumDotTable()) t.minimumDotTable = minimumDots(random, t.angleModel);
 }
 
 void randomTranslucency(Random& random, bool wild, const StressFrame& frame, TranslucencySettings& t) {

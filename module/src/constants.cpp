@@ -10,7 +10,6 @@
 #include "entry_points.h"
 #include "frame.h"
 #include "material/tables.h"
-#include "minimum_dot.h"
 #include "plan.h"
 
 namespace pellucid {
@@ -204,7 +203,7 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
     c.cone.y = static_cast<float>(-outer * scale);
   }
   // A light whose minimum dot is -1 was skipped: nothing comes through, and the quotient would be 0/0.
-  const double m = minimumDotOf(f.thesis, l);
+  const double m = f.minimumDot(l);
   c.cone.z = static_cast<float>(m > -1 ? 1 / (m + 1) : 0);
   c.cone.w = static_cast<float>(m > -1 ? m / (m + 1) : 0);
   return c;

@@ -132,7 +132,6 @@ void checkDesc(const PellucidContextDesc& desc, Findings& out) {
     return out.error("options.shadowViewType", "is VkImageViewType ",
                      static_cast<int>(desc.options.shadowViewType), "; 2D and 2D_ARRAY are possible");
   const std::tuple<const char*, uint32_t, uint32_t> mosts[] = {
-      {"options.deferPipelines", desc.options.deferPipelines, 1},
       {"options.lightTables", desc.options.lightTables, 1},
       {"options.descriptorPools", desc.options.descriptorPools, 1}};
   for (const auto& [field, value, most] : mosts)
@@ -207,23 +206,13 @@ extern "C" PellucidResult pellucidCreateContext(const PellucidContextDesc* desc,
     return out.result();
   }
   PellucidResult result = createLayouts(*c, out);
-  if (result == PELLUCID_OK && !desc->options.deferPipelines)
-    result = createPipelines(*c, std::bitset<kMostPasses>().set(), out);
+  if (result == PELLUCID_OK) result = createPipelines(*c, out);
   if (result != PELLUCID_OK) {
     pellucidDestroyContext(c);
     return result;
   }
   *context = c;
   return PELLUCID_OK;
-}
-
-extern "C" PellucidResult pellucidCreatePipelines(PellucidContext* c, const PellucidPlan* plan) {
-  if (!c || !plan) return PELLUCID_ERROR_INVALID_ARGUMENT;
-  std::bitset<kMostPasses> wanted;
-  for (uint32_t i = 0; i < plan->dispatchCount; ++i)
-    if (plan->dispatches[i].pipeline < allPasses().size()) wanted.set(plan->dispatches[i].pipeline);
-  Findings out(c->desc.message, c->desc.messageUser);
-  return createPipelines(*c, wanted, out);
 }
 
 extern "C" PellucidResult pellucidCreateDescriptorPool(const PellucidContext* c, VkDescriptorPool* pool) {

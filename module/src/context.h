@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <span>
 
 #include "findings.h"
@@ -40,14 +39,14 @@ struct VkTable {
 
 }  // namespace pellucid
 
-// Immutable once pellucidCreateContext has returned, but for the pipelines that pellucidCreatePipelines adds.
+// Immutable once pellucidCreateContext has returned.
 struct PellucidContext {
   VkDevice device = VK_NULL_HANDLE;
   VkAllocationCallbacks allocator{};
   bool hasAllocator = false;
   pellucid::VkTable vk;
   PellucidContextDesc desc{};  // its `allocator` may be gone
-  // By pass. A pipeline is NULL that is not among desc.options.uses, or not made yet.
+  // By pass. A pipeline is NULL that is not among desc.options.uses.
   std::array<VkDescriptorSetLayout, pellucid::kMostPasses> setLayouts{};
   std::array<VkPipelineLayout, pellucid::kMostPasses> pipelineLayouts{};
   std::array<VkPipeline, pellucid::kMostPasses> pipelines{};
@@ -63,12 +62,8 @@ PellucidResult vulkanError(Findings& out, const char* call, VkResult result);
 // Makes the set and the layout of every pass.
 PellucidResult createLayouts(PellucidContext& context, Findings& out);
 
-// Makes the pipelines among `wanted`, bits by index, that are of the context's uses and not there.
-PellucidResult createPipelines(PellucidContext& context, std::bitset<kMostPasses> wanted, Findings& out);
-
-// SPIR-V for devices that write no storage image without a format: gives the storage image that has none one
-// of 16 or 32 bits a channel, in place.
-void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide);
+// Makes the pipelines of the context's uses.
+PellucidResult createPipelines(PellucidContext& context, Findings& out);
 
 // Refuses views that cannot be recorded. Errors go to the context's message; `named`: with the view's index
 // before the field.

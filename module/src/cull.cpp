@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "lights.h"
-#include "minimum_dot.h"
 
 namespace pellucid {
 namespace {
@@ -66,7 +65,7 @@ ViewBounds::ViewBounds(const Setup& setup) : setup_(setup) {
 bool ViewBounds::angleStops(const PellucidLight& light) const {
   const PellucidThesisOptions& thesis = setup_.thesis;
   if (thesis.angleModel == PELLUCID_ANGLE_NORMAL) return false;
-  const double least = -minimumDotOf(thesis, light);
+  const double least = -setup_.minimumDot(light);
   if (least >= 1) return true;
   if (light.type == PELLUCID_LIGHT_DIRECTIONAL) {
     const glm::dvec3 toLight = -(glm::dmat3(setup_.viewFromWorld) * toVector(light.direction));

@@ -19,8 +19,6 @@ extern "C" void pellucidInitThesisOptions(PellucidThesisOptions* options) {
   if (!options) return;
   *options = {};
   for (float& factor : options->transmittanceFilter) factor = 1;
-  options->faceVector[2] = 1;
-  options->upAxis[1] = 1;
 }
 
 extern "C" void pellucidInitContextDesc(PellucidContextDesc* desc) {

@@ -20,10 +20,6 @@ const Struct& as(const void* object) {
   return *static_cast<const Struct*>(object);
 }
 
-bool looksMinimumDotsUp(const void* object, uint32_t) {
-  const uint32_t model = as<PellucidThesisOptions>(object).angleModel;
-  return model == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH || model == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-}
 bool hasPosition(const void* object, uint32_t) {
   return as<PellucidLight>(object).type != PELLUCID_LIGHT_DIRECTIONAL;
 }
@@ -40,7 +36,6 @@ bool isGaussian(const void* object, uint32_t index) {
 }
 
 #define FIELD(Struct, name) #name, offsetof(Struct, name), sizeof(static_cast <Struct*>(nullptr)->name) / 4
-constexpr const char* kMinimumDots = "`angleModel` MINIMUM_DOT_AZIMUTH or _SPHERE";
 
 constexpr auto kFrameFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidFrame, metersPerUnit), 1e-9F, 1e9F},
@@ -65,17 +60,13 @@ constexpr auto kFrameIntegers = std::to_array<IntegerDomain>({
 
 constexpr auto kThesisFloats = std::to_array<FloatDomain>({
     {FIELD(PellucidThesisOptions, anglePolynomial), -1e6F, 1e6F},
-    {FIELD(PellucidThesisOptions, minimumDot), -1, 0},
     {FIELD(PellucidThesisOptions, maximumThickness), 0, kLongestMm},
     {FIELD(PellucidThesisOptions, transmittanceFilter), 0, 1},
-    {FIELD(PellucidThesisOptions, faceVector), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
-    {FIELD(PellucidThesisOptions, upAxis), -kLongest, kLongest, false, looksMinimumDotsUp, kMinimumDots},
-    {FIELD(PellucidThesisOptions, objectCenter), -kLongest, kLongest, false, looksMinimumDotsUp,
-     kMinimumDots},
+    {FIELD(PellucidThesisOptions, objectCenter), -kLongest, kLongest},
 });
 
 constexpr auto kThesisIntegers = std::to_array<IntegerDomain>({
-    {FIELD(PellucidThesisOptions, angleModel), 0, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE},
+    {FIELD(PellucidThesisOptions, angleModel), 0, PELLUCID_ANGLE_MINIMUM_DOT},
     {FIELD(PellucidThesisOptions, constantViewDirection), 0, 1},
     {FIELD(PellucidThesisOptions, chordThickness), 0, 1},
     {FIELD(PellucidThesisOptions, prescaleAngle), 0, 1},
@@ -109,6 +100,7 @@ constexpr auto kLightFloats = std::to_array<FloatDomain>({
     // Pi/2 rounds up as a float.
     {FIELD(PellucidLight, innerConeAngle), 0, 1.5707964F, false, isSpot, "spot lights"},
     {FIELD(PellucidLight, outerConeAngle), 0, 1.5707964F, true, isSpot, "spot lights"},
+    {FIELD(PellucidLight, minimumDot), -1, 0},
 });
 
 constexpr auto kLightIntegers =

@@ -21,6 +21,12 @@ struct Inputs {
   bool separate() const {
     return frame.options.addToOutput == 1 || (given(frame.output) && given(frame.irradiance) && !inPlace());
   }
+  // That the angle model reads; 0: it reads none.
+  double minimumDot(const PellucidLight& light) const {
+    const uint32_t model = thesis.angleModel;
+    const bool prescaled = thesis.prescaleAngle && model >= PELLUCID_ANGLE_COSINE && model <= PELLUCID_ANGLE_POLYNOMIAL;
+    return prescaled || model == PELLUCID_ANGLE_MINIMUM_DOT ? light.minimumDot : 0;
+  }
   // Bits of a material value that may hold the index.
   uint32_t materialBits() const {
     return (frame.options.materialMask == 0 ? UINT32_MAX : frame.options.materialMask) >> frame.options.materialShift;

@@ -14,6 +14,22 @@ constexpr uint32_t kHeaderWords = 5, kOpTypeImage = 25, kOpCapability = 17;
 constexpr uint32_t kCapabilityShader = 1, kCapabilityWriteWithoutFormat = 56;
 constexpr uint32_t kUnknown = 0, kRgba32f = 1, kRgba16f = 2, kStorageImage = 2;
 
+// Gives the storage image that has no format one of 16 or 32 bits a channel, in place.
+void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
+  for (std::size_t at = kHeaderWords; at < wordCount;) {
+    const uint32_t opcode = words[at] & 0xFFFF, count = words[at] >> 16;
+    if (count == 0 || count > wordCount - at) return;
+    uint32_t* operands = words + at + 1;
+    // A capability may be declared twice.
+    if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
+      operands[0] = kCapabilityShader;
+    // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
+    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
+      operands[7] = wide ? kRgba32f : kRgba16f;
+    at += count;
+  }
+}
+
 // The set and the layout of a pass.
 VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   VkDescriptorSetLayoutBinding bindings[PELLUCID_BINDING_COUNT];
@@ -38,28 +54,16 @@ VkResult createLayout(PellucidContext& c, uint32_t index, const char** call) {
   return c.vk.vkCreatePipelineLayout(c.device, &layout, c.callbacks(), &c.pipelineLayouts[index]);
 }
 
-// One pipeline for each thread that the caller lends.
-struct PipelineJobs {
-  PellucidContext& context;
-  std::array<uint32_t, kMostPasses> pipelines{};  // to make
-  std::array<VkResult, kMostPasses> results{};
-};
-
 VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pipeline) {
   const PellucidContextDesc& desc = c.desc;
   const Pass& pass = *allPasses()[index];
-  std::span<const uint32_t> words = pass.wordsFor(desc.options.shadowViewType);
-  std::unique_ptr<uint32_t[]> patched;
-  if (desc.options.outputFormat != VK_FORMAT_UNDEFINED) {
-    patched.reset(new (std::nothrow) uint32_t[words.size()]);
-    if (!patched) return VK_ERROR_OUT_OF_HOST_MEMORY;
-    std::copy(words.begin(), words.end(), patched.get());
-    fixOutputFormat(patched.get(), words.size(), desc.options.outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT);
-    words = {patched.get(), words.size()};
-  }
+  const std::unique_ptr<uint32_t[]> words(new (std::nothrow) uint32_t[pass.wordsFor(desc.options.shadowViewType).size()]);
+  if (!words) return VK_ERROR_OUT_OF_HOST_MEMORY;
+  PellucidShader shader;
+  pellucidGetShader(index, desc.options.shadowViewType, desc.options.outputFormat, words.get(), &shader);
   VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  moduleInfo.codeSize = words.size_bytes();
-  moduleInfo.pCode = words.data();
+  moduleInfo.codeSize = shader.wordCount * sizeof(uint32_t);
+  moduleInfo.pCode = shader.words;
   VkShaderModule module = VK_NULL_HANDLE;
   VkResult result = c.vk.vkCreateShaderModule(c.device, &moduleInfo, c.callbacks(), &module);
   if (result != VK_SUCCESS) return result;
@@ -92,21 +96,6 @@ VkResult createPipeline(const PellucidContext& c, uint32_t index, VkPipeline* pi
 
 }  // namespace
 
-void fixOutputFormat(uint32_t* words, std::size_t wordCount, bool wide) {
-  for (std::size_t at = kHeaderWords; at < wordCount;) {
-    const uint32_t opcode = words[at] & 0xFFFF, count = words[at] >> 16;
-    if (count == 0 || count > wordCount - at) return;
-    uint32_t* operands = words + at + 1;
-    // A capability may be declared twice.
-    if (opcode == kOpCapability && operands[0] == kCapabilityWriteWithoutFormat)
-      operands[0] = kCapabilityShader;
-    // result, sampled type, dim, depth, arrayed, multisampled, sampled, format
-    if (opcode == kOpTypeImage && operands[6] == kStorageImage && operands[7] == kUnknown)
-      operands[7] = wide ? kRgba32f : kRgba16f;
-    at += count;
-  }
-}
-
 PellucidResult createLayouts(PellucidContext& c, Findings& out) {
   const char* call = nullptr;
   for (uint32_t i = 0; i < allPasses().size(); ++i)
@@ -115,30 +104,17 @@ PellucidResult createLayouts(PellucidContext& c, Findings& out) {
   return PELLUCID_OK;
 }
 
-PellucidResult createPipelines(PellucidContext& c, std::bitset<kMostPasses> wanted, Findings& out) {
-  const PellucidContextDesc& desc = c.desc;
-  PipelineJobs jobs{c};
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < allPasses().size(); ++i)
-    if (wanted[i] && !c.pipelines[i] &&
-        (desc.options.uses == 0 || (allPasses()[i]->uses & ~desc.options.uses) == 0))
-      jobs.pipelines[count++] = i;
-  if (count == 0) return PELLUCID_OK;
-  const auto job = [](void* data, uint32_t i) {
-    auto& all = *static_cast<PipelineJobs*>(data);
-    const uint32_t pipeline = all.pipelines[i];
-    all.results[i] = createPipeline(all.context, pipeline, &all.context.pipelines[pipeline]);
-  };
-  if (desc.options.parallelFor)
-    desc.options.parallelFor(desc.options.parallelUser, count, job, &jobs);
-  else
-    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
-  for (uint32_t i = 0; i < count; ++i)
-    if (jobs.results[i] != VK_SUCCESS) {
+PellucidResult createPipelines(PellucidContext& c, Findings& out) {
+  const uint32_t uses = c.desc.options.uses;
+  for (uint32_t i = 0; i < allPasses().size(); ++i) {
+    const Pass& pass = *allPasses()[i];
+    if (uses != 0 && (pass.uses & ~uses) != 0) continue;
+    if (const VkResult result = createPipeline(c, i, &c.pipelines[i]); result != VK_SUCCESS) {
       char call[64];
-      Text(call, sizeof call) << "creating pipeline " << allPasses()[jobs.pipelines[i]]->pipeline;
-      return vulkanError(out, call, jobs.results[i]);
+      Text(call, sizeof call) << "creating pipeline " << pass.pipeline;
+      return vulkanError(out, call, result);
     }
+  }
   return PELLUCID_OK;
 }
 
@@ -175,13 +151,20 @@ extern "C" const char* pellucidBindingName(uint32_t binding) {
   return binding < kBindings.size() ? kBindings[binding].name : "unknown binding";
 }
 
-extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
-                                            PellucidShader* shader) {
+extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType, VkFormat outputFormat,
+                                            uint32_t* words, PellucidShader* shader) {
   const bool known = shadowViewType == VK_IMAGE_VIEW_TYPE_2D || shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-  if (pipeline >= allPasses().size() || !known || !shader) return PELLUCID_ERROR_INVALID_ARGUMENT;
+  const bool any = outputFormat == VK_FORMAT_UNDEFINED, wide = outputFormat == VK_FORMAT_R32G32B32A32_SFLOAT;
+  if (pipeline >= allPasses().size() || !known || !shader ||
+      (!any && !wide && outputFormat != VK_FORMAT_R16G16B16A16_SFLOAT))
+    return PELLUCID_ERROR_INVALID_ARGUMENT;
   const Pass& pass = *allPasses()[pipeline];
-  const std::span<const uint32_t> words = pass.wordsFor(shadowViewType);
-  *shader = {words.data(), words.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data()};
+  const std::span<const uint32_t> own = pass.wordsFor(shadowViewType);
+  if (!any && words) {
+    std::copy(own.begin(), own.end(), words);
+    fixOutputFormat(words, own.size(), wide);
+  }
+  *shader = {any ? own.data() : words, own.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data()};
   return PELLUCID_OK;
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "frame.h"
-#include "minimum_dot.h"
 #include "plan.h"
 
 namespace pellucid {
@@ -14,7 +13,8 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
   if (isAmbient(light)) return 0;  // from everywhere alike
   const glm::dmat4& view = f.viewFromWorld;
   const glm::dvec3 axis = f.depthRange.forward * glm::dvec3(view[0][2], view[1][2], view[2][2]);
-  const glm::dvec3 toLight = fromObject(f.thesis, light);
+  const glm::dvec3 toLight = light.type == PELLUCID_LIGHT_DIRECTIONAL ? -toVector(light.direction)
+                                                                       : toVector(light.position) - toVector(f.thesis.objectCenter);
   const double length = glm::length(toLight);
   return static_cast<float>(length > 0 ? glm::dot(axis, toLight) / length : 0);
 }

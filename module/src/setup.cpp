@@ -13,9 +13,8 @@ const char* whyNot(const Inputs& inputs, bool solids) {
   const PellucidThesisOptions& t = inputs.thesis;
   if (inputs.frame.options.cameraThickness == 1) return "thickness comes from the camera";
   if (t.materialMarkBit != 0) return "materialMarkBit is of one thickness a pixel";
-  if (t.angleModel != PELLUCID_ANGLE_NORMAL || t.constantViewDirection != 0 || t.minimumDot != 0 ||
-      t.maximumThickness > 0)
-    return "angleModel, constantViewDirection, minimumDot and maximumThickness are of one thickness a pixel";
+  if (t.angleModel != PELLUCID_ANGLE_NORMAL || t.constantViewDirection != 0 || t.maximumThickness > 0)
+    return "angleModel, constantViewDirection and maximumThickness are of one thickness a pixel";
   if (!solids) return "every material is thin-walled";
   for (uint32_t i = 0; i < inputs.frame.materialCount; ++i)
     if (!canBeGathered(modelOf(inputs.frame.materials[i])))

@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include "domains.h"
-#include "minimum_dot.h"
 #include "planner.h"
 #include "material/tables.h"
 
@@ -43,29 +42,6 @@ void checkMaterialBits(const Inputs& inputs, Findings& out) {
               f.materialCount, " materials take ", indices);
 }
 
-void checkMinimumDotTable(const PellucidThesisOptions& t, Findings& out) {
-  const bool azimuth = t.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-  if (!azimuth && t.angleModel != PELLUCID_ANGLE_MINIMUM_DOT_SPHERE) return;
-  const uint32_t least = azimuth ? 1 : 3, most = azimuth ? kMostAzimuths : kMostSphereSide;
-  const uint32_t size = t.minimumDotTableSize;
-  if (size < least || size > most) {
-    out.error("thesis.minimumDotTableSize", "is ", size, ", outside ", least, "..", most);
-  } else if (!t.minimumDotTable) {
-    out.error("thesis.minimumDotTable", "is NULL, but the angle model looks minimum dots up");
-  } else {
-    for (uint32_t i = 0; i < minimumDotEntries(t); ++i)
-      if (!(t.minimumDotTable[i] >= -1 && t.minimumDotTable[i] <= 0))
-        out.error("thesis.minimumDotTable", "[", i, "] is ", t.minimumDotTable[i], ", outside [-1, 0]");
-  }
-  const double sine =
-      glm::length(glm::cross(glm::normalize(toVector(t.upAxis)), glm::normalize(toVector(t.faceVector))));
-  // Nearer to each other than this, float rounding would decide where the face looks.
-  if (!(sine > 1e-4))
-    out.error("thesis.faceVector", "is ", t.faceVector[0], ", ", t.faceVector[1], ", ", t.faceVector[2],
-              " and upAxis ", t.upAxis[0], ", ", t.upAxis[1], ", ", t.upAxis[2],
-              "; must be finite, longer than 0 and not parallel");
-}
-
 void checkLightTables(const PellucidFrame& f, Findings& out) {
   if (f.options.lightTableCount > PELLUCID_MAX_LIGHT_TABLES) return;  // its domain says so
   if (f.options.lightTableCount > 0 && !f.options.lightTables)
@@ -91,7 +67,6 @@ void checkFields(const Inputs& inputs, Findings& out) {
       f.options.outputFormat != VK_FORMAT_B10G11R11_UFLOAT_PACK32)
     out.error("options.outputFormat", "is VkFormat ", static_cast<int>(f.options.outputFormat),
               "; use R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT or B10G11R11_UFLOAT_PACK32");
-  checkMinimumDotTable(inputs.thesis, out);
 
   if (f.options.gatherSpacing != 0 && f.options.gatherSpacing != 1 && f.options.gatherSpacing != 2 &&
       f.options.gatherSpacing != 4)

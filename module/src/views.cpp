@@ -60,9 +60,6 @@ void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& 
     const uint32_t lacks = c.desc.options.uses != 0 ? allPasses()[pipeline]->uses & ~c.desc.options.uses : 0;
     if (lacks != 0)
       return out.error("plan", "needs PellucidContextOptions::uses with ", useOf(lacks), " for its dispatch \"", plan.dispatches[i].name, "\"");
-    if (c.pipelines[pipeline] == VK_NULL_HANDLE)
-      return out.error("plan", "needs pipeline ", pellucidPipelineName(pipeline),
-                       ", which is not made; call pellucidCreatePipelines with the plan");
   }
 }
 

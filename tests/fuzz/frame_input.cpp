@@ -139,13 +139,6 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   use(maps_, frame.shadowMapCount, frame.shadowMaps, 4);
   use(images_, frame.shadowImageCount, frame.shadowImages, 8);
   thesis_ = thesis;
-  const uint32_t side = thesis_.minimumDotTableSize;
-  uint32_t entries = 0;
-  if (thesis_.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH && side <= 360) entries = side;
-  if (thesis_.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE && side <= 16) entries = side * side;
-  table_.assign(entries, header[7] < 200 ? -0.25f : 1.0f);
-  table_.shrink_to_fit();
-  thesis_.minimumDotTable = header[6] & 16 ? nullptr : table_.data();
   ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
   frame.options.ambient = header[6] & 64 ? ambient_.data() : nullptr;
   frame.options.thesis = header[6] & 32 ? nullptr : &thesis_;

@@ -30,7 +30,7 @@ private:
   std::vector<PellucidLight> lights_;
   std::vector<PellucidShadowMap> maps_;
   std::vector<PellucidImage> images_;
-  std::vector<float> table_, ambient_;
+  std::vector<float> ambient_;
   std::vector<PellucidLightTable> lightTables_;
 };
 

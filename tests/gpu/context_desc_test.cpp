@@ -1,5 +1,4 @@
 // What a context is created for: output formats and pipelines.
-#include <set>
 
 #include "common/error.h"
 #include "gpu_fixture.h"
@@ -37,27 +36,8 @@ TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
   EXPECT_NE(said.find("outputFormat is VkFormat 37"), std::string::npos) << said;
 }
 
-TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
-  struct Lent {
-    std::set<uint32_t> jobs;
-    uint32_t count = 0;
-  } lent;
-  const auto change = [&](PellucidContextDesc& desc) {
-    desc.options.uses = PELLUCID_USE_DIFFUSION;
-    desc.options.parallelUser = &lent;
-    desc.options.parallelFor = [](void* user, uint32_t count, void (*job)(void*, uint32_t), void* data) {
-      auto& l = *static_cast<Lent*>(user);
-      l.count = count;
-      for (uint32_t i = count; i-- > 0;) {
-        job(data, i);
-        l.jobs.insert(i);
-      }
-    };
-  };
-  const Context diffusion(device(), change, Compile::AtCreation);
-  EXPECT_EQ(lent.count, 5u) << "base level, downsample, coarse levels, upsample, diffuse";
-  EXPECT_EQ(lent.jobs.size(), lent.count);
-
+TEST_F(ContextTest, RefusesFramesOfOtherUsesThanItsOwn) {
+  const Context diffusion(device(), [](PellucidContextDesc& desc) { desc.options.uses = PELLUCID_USE_DIFFUSION; });
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_DIFFUSION;
   EXPECT_TRUE(sameBits(record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, s)),
@@ -67,7 +47,7 @@ TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
   EXPECT_NE((said + diffusion.message()).find("plan needs PellucidContextOptions::uses with PELLUCID_USE_TRANSLUCENCY"), std::string::npos)
       << said;
   const auto unknown = [](PellucidContextDesc& desc) { desc.options.uses = 1u << 20; };
-  EXPECT_THROW(Context(device(), unknown, Compile::AtCreation), DeviceError);
+  EXPECT_THROW(Context(device(), unknown), DeviceError);
 }
 
 // Pipelines that do not look for an option change no frame without it, and frames with it are refused by its

@@ -203,14 +203,14 @@ const Option kOptions[] = {
      }},
     {"MinimumDotAzimuth",
      [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+       t.angleModel = kMinimumDotAzimuth;
        for (int i = 0; i < 36; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 7 % 36) / 40);
        t.faceVector = {0.3f, 0.1f, 1};
        t.upAxis = {0.1f, 2, 0};
      }},
     {"MinimumDotSphere",
      [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+       t.angleModel = kMinimumDotSphere;
        for (int i = 0; i < 49; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 11 % 49) / 60);
        t.faceVector = {0.3f, 0.1f, 1};
      }},
@@ -267,7 +267,7 @@ TEST_F(GpuTest, ShearedCamerasDiffuseAsStraightOnes) {
 TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
   Capture c = make({"slab"});
   const Light from = c.lights.at(0);
-  for (const auto model : {PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH, PELLUCID_ANGLE_MINIMUM_DOT_SPHERE}) {
+  for (const auto model : {kMinimumDotAzimuth, kMinimumDotSphere}) {
     ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.angleModel = model;
     s.translucency.objectCenter = {1, 2, 3};

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <functional>
 #include <new>
-#include <set>
 #include <thread>
 #include <vector>
 
@@ -230,7 +229,6 @@ TEST(ContextRecording, SetsComeFromTheFramesPool) {
 // A plan of a valid frame and a frame that is not: its constants are refused before what is not there is
 // read.
 TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
-  static const float table[9] = {};
   const std::pair<const char*, void (*)(Frame&)> damages[] = {
       {"NULL", [](Frame& f) { f.frame.materials = nullptr; }},
       {"NULL", [](Frame& f) { f.frame.lights = nullptr; }},
@@ -241,15 +239,9 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
        [](Frame& f) {
          f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
          f.frame.imageExtent[0] = 0;
-       }},
-      // More entries than there are, or than 32 bits count.
-      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 40000; }},
-      {"minimumDotTableSize", [](Frame& f) { f.thesis.minimumDotTableSize = 0x80000001u; }}};
+       }}};
   for (const auto& [words, damage] : damages) {
     CompleteFrame f;
-    f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-    f.thesis.minimumDotTableSize = 3;
-    f.thesis.minimumDotTable = table;
     ASSERT_EQ(f.problems(), "");
     const PellucidPlan plan = f.plan();
     damage(f);
@@ -262,37 +254,21 @@ TEST(ContextRecording, ConstantsOfFramesThatAreNotValidAreRefused) {
   }
 }
 
-// A context that defers has the pipelines of the plans that it was asked for, once each.
-TEST(ContextPipelines, AreMadeForPlans) {
+// Layouts of all passes stay, and only pipelines of the uses are made.
+TEST(ContextPipelines, AreThoseOfTheUses) {
   NullDevice device;
-  Sentences sentences;
-  PellucidContextDesc desc = descOf(device, sentences);
-  desc.options.deferPipelines = 1;
-  PellucidContext* context = nullptr;
-  ASSERT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
-  const int layouts = device.live;
-  CompleteFrame f;
-  f.frame.options.features = PELLUCID_FEATURE_DIFFUSION;
-  const PellucidPlan plan = f.plan();
-  std::vector<unsigned char> constants;
-  NullCommands commands;
-  EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_NE(sentences.last.find("pellucidCreatePipelines"), std::string::npos) << sentences.last;
-  EXPECT_EQ(commands.dispatches, 0u);
-  std::set<uint32_t> pipelines;
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) pipelines.insert(plan.dispatches[i].pipeline);
-  for (int times = 0; times < 2; ++times) {
-    EXPECT_EQ(pellucidCreatePipelines(context, &plan), PELLUCID_OK);
-    EXPECT_EQ(device.live, layouts + static_cast<int>(pipelines.size()));
-  }
-  EXPECT_EQ(recordOnNull(context, commands, plan, f.frame, constants), PELLUCID_OK);
-  EXPECT_EQ(commands.dispatches, plan.dispatchCount);
-  EXPECT_EQ(pellucidCreatePipelines(nullptr, &plan), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidCreatePipelines(context, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
-  pellucidDestroyContext(context);
-  desc.options.deferPipelines = 2;
-  EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_NE(sentences.last.find("deferPipelines is 2"), std::string::npos) << sentences.last;
+  PellucidContextDesc desc = device.desc();
+  const auto live = [&](uint32_t uses) {
+    desc.options.uses = uses;
+    PellucidContext* context = nullptr;
+    EXPECT_EQ(pellucidCreateContext(&desc, &context), PELLUCID_OK);
+    const int count = device.live;
+    pellucidDestroyContext(context);
+    return count;
+  };
+  const int all = static_cast<int>(pellucidGetPipelineCount());
+  EXPECT_EQ(live(0), 3 * all);
+  EXPECT_EQ(live(PELLUCID_USE_DIFFUSION), 2 * all + 5) << "base level, downsample, coarse levels, upsample, diffuse";
 }
 
 // Frames of different kinds, so that threads run different code at once.

@@ -36,10 +36,6 @@ const std::vector<std::function<void(Frame&)>> kFrames = {
       std::fill_n(f.material.wallTransmittance, 3, 0.5f);
     },
     [](Frame& f) {
-      static const float table[9] = {};
-      f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
-      f.thesis.minimumDotTableSize = 3;
-      f.thesis.minimumDotTable = table;
       f.material.gaussianCount = PELLUCID_MAX_GAUSSIANS;
       for (int c = 0; c < 3; ++c)
         for (int k = 0; k < PELLUCID_MAX_GAUSSIANS; ++k) {
@@ -201,12 +197,6 @@ void countOf(Frame& f, uint32_t value) {
   f.frame.*first = nullptr;
 }
 
-template <PellucidAngleModel model>
-void tableSizeOf(Frame& f, uint32_t value) {
-  f.thesis.angleModel = model;
-  f.thesis.minimumDotTableSize = value;
-}
-
 const std::vector<IntegerRule> kIntegerRules = {
     RULE(PellucidFrame, options.features, "options.features", 4, 7, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, imageExtent[1], "imageExtent", 0, 65537, 0x80000000, 0xFFFFFFFF),
@@ -241,16 +231,6 @@ const std::vector<IntegerRule> kIntegerRules = {
     RULE(PellucidFrame, options.gatherSpacing, "options.gatherSpacing", 3, 5, 8, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidFrame, options.materialMask, "options.materialMask", 2, 0x80000000, 0xFFFFFFFE),
     RULE(PellucidFrame, options.reuse, "options.reuse", 3, 5, 0x80000000, 0xFFFFFFFF),
-    {"PellucidThesisOptions",
-     "minimumDotTableSize",
-     "thesis.minimumDotTableSize",
-     tableSizeOf<PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH>,
-     {0, 361, 0x80000000, 0xFFFFFFFF}},
-    {"PellucidThesisOptions",
-     "minimumDotTableSize",
-     "thesis.minimumDotTableSize",
-     tableSizeOf<PELLUCID_ANGLE_MINIMUM_DOT_SPHERE>,
-     {0, 2, 17, 65536, 0x80000001, 0xFFFFFFFF}},
     RULE(PellucidThesisOptions, materialMarkBit, "thesis.materialMarkBit", 1, 3, 192, 0xFFFFFFFF),
     RULE(PellucidLight, firstShadowMap, "lights[0].shadowMapCount", 1, 0x80000000, 0xFFFFFFFF),
     RULE(PellucidLight, shadowMapCount, "lights[0].shadowMapCount", 2, PELLUCID_MAX_LIGHT_SHADOW_MAPS + 1,

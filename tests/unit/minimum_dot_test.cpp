@@ -21,7 +21,7 @@ Light fromDirection(double x, double y, double z) {
 // The face looks along +x, so that sideways, cross(up, face), is -z.
 TranslucencySettings azimuthTable() {
   TranslucencySettings s;
-  s.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
+  s.angleModel = kMinimumDotAzimuth;
   for (int i = 0; i < 36; ++i) s.minimumDotTable.push_back(static_cast<float>(-i) / 64);
   s.faceVector = {2, 0.5f, 0};  // its part along up does not count
   return s;
@@ -40,7 +40,7 @@ TEST(MinimumDot, AzimuthEntriesAndWrap) {
 
 TEST(MinimumDot, SphereEntriesAreOctahedral) {
   TranslucencySettings s;
-  s.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+  s.angleModel = kMinimumDotSphere;
   //                  -s,-f: down      -f        down
   s.minimumDotTable = {-0.9f, -0.1f, -0.9f, -0.2f, -0.5f, -0.3f, -0.9f, -0.4f, -0.9f};
   const auto at = [&](double x, double y, double z) {
@@ -66,8 +66,15 @@ TEST(MinimumDot, PointLightsAreSeenFromTheCenter) {
 
 TEST(MinimumDot, TableMustFit) {
   TranslucencySettings s;
-  s.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_SPHERE;
+  s.angleModel = kMinimumDotSphere;
   s.minimumDotTable.assign(10, 0);
+  EXPECT_THROW(reference::minimumDot(s, fromDirection(0, 0, 1)), InputError);
+  s.minimumDotTable.assign(9, 0);
+  EXPECT_EQ(reference::minimumDot(s, fromDirection(0, 0, 1)), 0);
+  s.minimumDotTable[4] = 0.5f;
+  EXPECT_THROW(reference::minimumDot(s, fromDirection(0, 0, 1)), InputError);
+  s.minimumDotTable[4] = 0;
+  s.faceVector = {0, -2, 0};
   EXPECT_THROW(reference::minimumDot(s, fromDirection(0, 0, 1)), InputError);
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "context.h"
 #include "entry_points.h"
 #include "frame_fixture.h"
 #include "shared/pellucid_shared.h"
@@ -301,7 +300,6 @@ TEST(Plan, FramesThatCannotBeGatheredTakeOneThickness) {
       {"mark bit", [](Frame& f) { f.thesis.materialMarkBit = 128; }},
       {"angle", [](Frame& f) { f.thesis.angleModel = PELLUCID_ANGLE_COSINE; }},
       {"view", [](Frame& f) { f.thesis.constantViewDirection = 1; }},
-      {"minimum dot", [](Frame& f) { f.thesis.minimumDot = -0.1f; }},
       {"thickest", [](Frame& f) { f.thesis.maximumThickness = 10; }},
       {"model", [](Frame& f) {
          f.material.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
@@ -494,7 +492,7 @@ TEST(Plan, ImagesBesideMapsAreLeftOutWhereTheyAreTooMany) {
 // Of a shader's workgroups, as its SPIR-V states it: columns, rows.
 std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
   PellucidShader shader{};
-  EXPECT_EQ(pellucidGetShader(pipeline, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
+  EXPECT_EQ(pellucidGetShader(pipeline, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &shader), PELLUCID_OK);
   constexpr size_t kHeaderWords = 5;
   constexpr uint32_t kOpExecutionMode = 16, kLocalSize = 17;
   for (size_t i = kHeaderWords; i < shader.wordCount; i += shader.words[i] >> 16)
@@ -720,17 +718,22 @@ TEST(Plan, TablesOfOtherFieldsAreRefused) {
 
 TEST(Plan, ShadersThatAreNotThereAreRefused) {
   PellucidShader shader{};
-  EXPECT_EQ(pellucidGetShader(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, &shader),
-            PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_CUBE, &shader), PELLUCID_ERROR_INVALID_ARGUMENT);
-  EXPECT_EQ(pellucidGetShader(0, VK_IMAGE_VIEW_TYPE_2D, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
+  const auto get = [](uint32_t pipeline, VkImageViewType type, VkFormat format, PellucidShader* shader) {
+    return pellucidGetShader(pipeline, type, format, nullptr, shader);
+  };
+  constexpr PellucidResult kInvalid = PELLUCID_ERROR_INVALID_ARGUMENT;
+  EXPECT_EQ(get(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, &shader), kInvalid);
+  EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_UNDEFINED, &shader), kInvalid);
+  EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, &shader), kInvalid);
+  EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr), kInvalid);
 }
 
-// What the context does for devices without shaderStorageImageWriteWithoutFormat.
+// For devices without shaderStorageImageWriteWithoutFormat.
 TEST(Plan, OutputFormatIsPatchedIntoShaders) {
-  const auto counts = [](const std::vector<uint32_t>& words) {
+  const auto counts = [](const PellucidShader& shader) {
     std::array<int, 2> result{};  // capabilities and images without a format
-    for (size_t i = 5; i < words.size(); i += words[i] >> 16) {
+    const uint32_t* words = shader.words;
+    for (size_t i = 5; i < shader.wordCount; i += words[i] >> 16) {
       const uint32_t opcode = words[i] & 0xFFFF;
       if (opcode == 17 && words[i + 1] == 56) ++result[0];
       if (opcode == 25 && words[i + 7] == 2 && words[i + 8] == 0) ++result[1];
@@ -738,13 +741,21 @@ TEST(Plan, OutputFormatIsPatchedIntoShaders) {
     return result;
   };
   for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+    SCOPED_TRACE(pellucidPipelineName(p));
     PellucidShader shader{};
-    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, &shader), PELLUCID_OK);
-    std::vector<uint32_t> words(shader.words, shader.words + shader.wordCount);
-    const auto before = counts(words);
-    EXPECT_LE(before[0], before[1]) << pellucidPipelineName(p);  // an image that is not written needs none
-    pellucid::fixOutputFormat(words.data(), words.size(), true);
-    EXPECT_EQ(counts(words), (std::array<int, 2>{})) << pellucidPipelineName(p);
+    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &shader), PELLUCID_OK);
+    const auto before = counts(shader);
+    EXPECT_LE(before[0], before[1]);  // an image that is not written needs none
+    for (const VkFormat format : {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}) {
+      PellucidShader fixed{};
+      ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, format, nullptr, &fixed), PELLUCID_OK);
+      EXPECT_EQ(fixed.words, nullptr);
+      ASSERT_EQ(fixed.wordCount, shader.wordCount);
+      std::vector<uint32_t> words(fixed.wordCount);
+      ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, format, words.data(), &fixed), PELLUCID_OK);
+      EXPECT_EQ(fixed.words, words.data());
+      EXPECT_EQ(counts(fixed), (std::array<int, 2>{}));
+    }
   }
 }
 

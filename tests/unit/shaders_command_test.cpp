@@ -130,7 +130,7 @@ TEST(ShadersCommand, DescribesWhatTheModulesWordsSay) {
     ASSERT_EQ(pellucidGetShader(shader["pipeline"],
                                 shader["shadowViewType"] == "2D_ARRAY" ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
                                                                        : VK_IMAGE_VIEW_TYPE_2D,
-                                &module),
+                                VK_FORMAT_UNDEFINED, nullptr, &module),
               PELLUCID_OK);
     const Words words = readWords(std::string(reinterpret_cast<const char*>(module.words), module.wordCount * 4));
     EXPECT_LE(words.sharedBytes, 16384u) << "more than the context asks of the device";

@@ -85,27 +85,6 @@ const Violation kViolations[] = {
        }();
        f.frame.options.ambient = sky.data();
      }},
-    {"NoMinimumDots", "thesis.minimumDotTable", "NULL",
-     [](Frame& f) {
-       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.thesis.minimumDotTableSize = 36;
-     }},
-    {"MinimumDotEntry", "thesis.minimumDotTable", "[1] is 0.5",
-     [](Frame& f) {
-       static const float table[2] = {0, 0.5f};
-       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.thesis.minimumDotTable = table;
-       f.thesis.minimumDotTableSize = 2;
-     }},
-    {"FaceAlongUp", "thesis.faceVector", "parallel",
-     [](Frame& f) {
-       static const float table[1] = {0};
-       f.thesis.angleModel = PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH;
-       f.thesis.minimumDotTable = table;
-       f.thesis.minimumDotTableSize = 1;
-       f.thesis.faceVector[1] = 5;
-       f.thesis.faceVector[2] = 0;
-     }},
     {"ViewScale", "viewFromWorld", "rotation", [](Frame& f) { f.frame.viewFromWorld[0] = 2; }},
     {"OutputFormat", "options.outputFormat", "VkFormat 37",
      [](Frame& f) { f.frame.options.outputFormat = VK_FORMAT_R8G8B8A8_UNORM; }},

@@ -67,7 +67,8 @@ typedef struct PellucidContextDesc {
 /* Writes the defaults. */
 PELLUCID_API void pellucidInitContextDesc(PellucidContextDesc* desc);
 
-/* Checks the device's limits and makes pipelines. Any thread may use the context. On failure *context is NULL.
+/* Checks the device's limits and makes the pipelines of options.uses, on the calling thread. Any thread may use the context. On failure
+ * *context is NULL.
  * Errors: VERSION, INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 
@@ -109,6 +110,9 @@ typedef struct PellucidLight {
   /* Falloff of point and spot lights: indices into options.lightTables plus 1; 0 (default): no table. angleTable has factors by the angle
    * from `direction`. distanceTable has factors by distance. */
   uint32_t angleTable, distanceTable;
+  /* The largest cosine between the directions to eye and light for which light comes through, -1..0; default 0. -1: no light comes
+   * through. Only thesis->angleModel MINIMUM_DOT and thesis->prescaleAngle read it. */
+  float minimumDot;
 } PellucidLight;
 
 /* Most shadow maps of a light. */
@@ -281,7 +285,7 @@ enum {
  * - State: recording changes pipeline and sets of the compute bind point, and 16 bytes of push constants.
  * - Frame: recording reads only images and descriptor pool of `frame`. Both may differ from those of pellucidBuildPlan. A plan of two
  *   views of output and irradiance refuses one view.
- * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a pipeline that the context lacks, or a bad slice;
+ * - Errors: INVALID_ARGUMENT for an image without a view, a plan that needs a use that the context lacks, or a bad slice;
  *   BUFFER_TOO_SMALL; OUT_OF_MEMORY and VULKAN of the descriptor pool. */
 PELLUCID_API PellucidResult pellucidRecordPlan(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                const PellucidPlan* plan, const PellucidFrame* frame,

@@ -34,9 +34,6 @@ typedef enum PellucidUse {
   PELLUCID_USE_THESIS = 1 << 7
 } PellucidUse;
 
-/* Calls job(data, i) for each i below count, on any threads and in any order. Returns after the last job. */
-typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
-
 /* Options of a context. */
 typedef struct PellucidContextOptions {
   /* PellucidUse bits; 0 (default): all. */
@@ -52,17 +49,10 @@ typedef struct PellucidContextOptions {
   /* 1: descriptors come from PellucidFrameOptions::descriptorPool, for devices without push descriptors. 0 (default): recording pushes
    * descriptors. */
   uint32_t descriptorPools;
-  /* 1: pellucidCreateContext makes no pipelines, and pellucidCreatePipelines makes the pipelines of a plan. 0 (default):
-   * pellucidCreateContext makes the pipelines of `uses`. */
-  uint32_t deferPipelines;
   /* Optional; the cache in which pipelines are looked up and stored. */
   VkPipelineCache pipelineCache;
   /* Optional; allocates the host memory of Vulkan objects. */
   const VkAllocationCallbacks* allocator;
-  /* Optional; runs the creation of pipelines on several threads. These threads use allocator and pipelineCache. */
-  PellucidParallelForFn parallelFor;
-  /* First argument of parallelFor. */
-  void* parallelUser;
 } PellucidContextOptions;
 
 /* ---- Frame --------------------------------------------------------------------------------------- */
@@ -149,7 +139,7 @@ typedef struct PellucidFrameOptions {
 
   /* Samples of the shadow map by each probe, a multiple of 4 up to 64; default 8. More samples lower the noise of thin parts. 0: one
    * light-space thickness a pixel. Some frames cannot be gathered, as plan.skips says. Causes are a solid of another model than EXP2 or
-   * SINH_EXP, cameraThickness 1, and five options of thesis: angleModel, constantViewDirection, minimumDot, maximumThickness and
+   * SINH_EXP, cameraThickness 1, and four options of thesis: angleModel, constantViewDirection, maximumThickness and
    * materialMarkBit. */
   uint32_t gatherSamples;
   /* Pixels a side of a probe's cell: 1, 2 or 4. 0 (default): 4 in images of more than 2^20 pixels, 2 in images of more than 2^19

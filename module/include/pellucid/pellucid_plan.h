@@ -118,12 +118,6 @@ struct PellucidPlan {
  * number. 0: the plan has no such dispatch. */
 PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
 
-/* Makes the pipelines that the plan needs and the context lacks, for a context with options.deferPipelines 1. Pipelines outside of
- * options.uses are not made. options.pipelineCache and parallelFor must still exist. No other thread may use the context at the same
- * time. On failure the context's `message` gets a sentence, and finished pipelines stay. Errors: INVALID_ARGUMENT, OUT_OF_MEMORY,
- * VULKAN. */
-PELLUCID_API PellucidResult pellucidCreatePipelines(PellucidContext* context, const PellucidPlan* plan);
-
 /* Makes a pool for PellucidFrameOptions::descriptorPool, with room for the recording of any plan. The caller destroys the pool by
  * vkDestroyDescriptorPool with the context's options.allocator. On failure *pool is NULL, and the context's `message` gets a sentence.
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY, VULKAN. */
@@ -137,7 +131,7 @@ typedef struct PellucidSpecialization {
 
 /* The shader of a pipeline. */
 typedef struct PellucidShader {
-  /* SPIR-V with entry point "main" and PELLUCID_PUSH_CONSTANT_BYTES of push constants. It declares StorageImageWriteWithoutFormat. */
+  /* SPIR-V with entry point "main" and PELLUCID_PUSH_CONSTANT_BYTES of push constants. */
   const uint32_t* words;
   /* Number of words. */
   size_t wordCount;
@@ -153,9 +147,12 @@ enum { PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 
 
 /* Number of pipelines. A pipeline has an index below this number. */
 PELLUCID_API uint32_t pellucidGetPipelineCount(void);
-/* Writes the shader of a pipeline. shadowViewType: that of PellucidContextOptions. Errors: INVALID_ARGUMENT for an unknown pipeline or
- * type. */
-PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType,
+/* Writes the shader of a pipeline. shadowViewType and outputFormat are those of PellucidContextOptions.
+ * - UNDEFINED: shader->words are the library's, and declare StorageImageWriteWithoutFormat. `words` may be NULL.
+ * - Other formats: the function writes the words of this format to `words`, and shader->words becomes `words`. The caller has room for
+ *   shader->wordCount words. `words` may be NULL to get the other fields of the shader.
+ * Errors: INVALID_ARGUMENT for an unknown pipeline, type or format. */
+PELLUCID_API PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType shadowViewType, VkFormat outputFormat, uint32_t* words,
                                               PellucidShader* shader);
 
 /* Name of a PellucidResource: "frontDepth", ... or "unknown resource". */
