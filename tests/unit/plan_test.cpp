@@ -702,7 +702,6 @@ TEST(Plan, ConstantsSizeBoundsThatOfFrames) {
         }
 }
 
-// Tables save time and change no bit, whatever the frame takes of them.
 TEST(Plan, TablesOfOtherFieldsAreRefused) {
   pellucid::test::CompleteFrame f;
   ASSERT_EQ(f.problems(), "");
@@ -718,8 +717,8 @@ TEST(Plan, TablesOfOtherFieldsAreRefused) {
 
 TEST(Plan, ShadersThatAreNotThereAreRefused) {
   PellucidShader shader{};
-  const auto get = [](uint32_t pipeline, VkImageViewType type, VkFormat format, PellucidShader* shader) {
-    return pellucidGetShader(pipeline, type, format, nullptr, shader);
+  const auto get = [](uint32_t pipeline, VkImageViewType type, VkFormat format, PellucidShader* to) {
+    return pellucidGetShader(pipeline, type, format, nullptr, to);
   };
   constexpr PellucidResult kInvalid = PELLUCID_ERROR_INVALID_ARGUMENT;
   EXPECT_EQ(get(pellucidGetPipelineCount(), VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, &shader), kInvalid);

@@ -75,7 +75,7 @@ typedef struct PellucidMaterial {
 } PellucidMaterial;
 
 /* Makes the tables of a material whose fields the caller filled or changed: what shaders read of its profile and its T(d). The target
- * pellucid has this function. The call takes 20 us. `message` (optional) names field and value. On failure the tables do not change.
+ * pellucid has this function. The call takes about 2 ms. `message` (optional) names field and value. On failure the tables do not change.
  * Errors: INVALID_ARGUMENT. */
 PELLUCID_API PellucidResult pellucidMakeMaterialTables(PellucidMaterial* material, PellucidMessageFn message, void* messageUser);
 
