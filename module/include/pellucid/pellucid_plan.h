@@ -26,7 +26,7 @@ typedef enum PellucidResource {
   PELLUCID_RESOURCE_HISTORY = 15,
   PELLUCID_RESOURCE_HIDDEN_IRRADIANCE = 16,
   PELLUCID_RESOURCE_MOTION = 17,
-  PELLUCID_RESOURCE_SHADOW0 = 18
+  PELLUCID_RESOURCE_SHADOW0 = 32 /* numbers in between are for further images */
 } PellucidResource;
 
 /* Limits of plans and dispatches. */
