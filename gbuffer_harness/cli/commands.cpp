@@ -16,7 +16,6 @@ void addCommands(const Command& app) {
   addSheetCommand(app);
   addStressCommand(app);
   addViewCommand(app);
-  addShadersCommand(app);
 }
 
 }  // namespace pellucid::harness

@@ -21,6 +21,5 @@ void addCaptureCommand(const Command& app);
 void addSheetCommand(const Command& app);
 void addStressCommand(const Command& app);
 void addViewCommand(const Command& app);
-void addShadersCommand(const Command& app);
 
 }  // namespace pellucid::harness
