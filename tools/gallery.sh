@@ -34,7 +34,7 @@ scene() {
   "$pellucid" truth "$@" --size "$size" --seconds "$seconds" --overwrite -o "$file.exr" >"$file.log" 2>&1 || { cat "$file.log" >&2; exit 1; }
   "$pellucid" replay "$file.exr" --repeat 0 --set features=none -o "$file.before.exr" >/dev/null
   device=$("$pellucid" replay "$file.exr" --repeat 0 "${replay[@]}" -o "$file.after.exr" | sed -n 1p)
-  "$pellucid" sheet "$file.before.exr" "$file.after.exr" "$file.exr@truth" --columns 3 -o "$pictures/$name.png" >/dev/null
+  /usr/bin/python3 "$(dirname "$0")/sheet.py" "$file.before.exr" "$file.after.exr" "$file.exr@truth" -o "$pictures/$name.png"
   printf '| %s. %s | ![%s: before, after, path traced](%s/%s.png) | %s |\n' "$title" "$text" "$title" \
     "$(realpath --relative-to "$(dirname "$page")" "$pictures")" "$name" "$(error "$file")" >>"$body"
 }

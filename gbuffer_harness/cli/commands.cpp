@@ -13,7 +13,6 @@ void addCommands(const Command& app) {
   addEvaluateCommand(app);
   addFlickerCommand(app);
   addCaptureCommand(app);
-  addSheetCommand(app);
   addStressCommand(app);
   addViewCommand(app);
 }

@@ -28,14 +28,4 @@ float autoExposure(const Image& image);
 // `gap` pixels; what the last row lacks is black. columns: >= 1.
 Image contactSheet(const std::vector<const Image*>& images, int columns, int gap = 4);
 
-struct TextRect {
-  int left, top, right, bottom;  // pixels
-};
-
-inline constexpr int kTextHeight = 9;  // capitals and their margin
-
-// ASCII words as rectangles to fill, right and down of (0, 0).
-std::vector<TextRect> textRects(const std::string& words);
-int textWidth(const std::string& words);
-
 }  // namespace pellucid::harness
