@@ -45,15 +45,15 @@ struct Options {
   std::string windowSize = "1280x800";
   bool noWindow = false, validate = false;
   int frames = 0;
-  std::string script, screenshot, save;
+  std::string screenshot, save;
   float exposure = 0;
   std::optional<ToneMap> toneMap;  // absent: none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
 const std::set<std::string> kNotOfTheScene = {
-    "--set",    "--mode",   "--debug",      "--device",   "--window-size", "--no-window", "--validate",
-    "--frames", "--script", "--screenshot", "--exposure", "--save",        "--tonemap",   "--help"};
+    "--set",    "--mode",       "--debug",    "--device", "--window-size", "--no-window", "--validate",
+    "--frames", "--screenshot", "--exposure", "--save",   "--tonemap",     "--help"};
 
 bool isCapture(const std::string& path) {
   const std::string extension = extensionOf(path);
@@ -122,7 +122,6 @@ void view(const Command& command, const Options& options) {
   application.window = !options.noWindow;
   setWindowSize(options.windowSize, application);
   application.frames = options.frames;
-  application.script = options.script;
   application.screenshot = options.screenshot;
   application.save = options.save;
   application.settingsText = settingsJson;
@@ -147,7 +146,6 @@ void addViewCommand(const Command& app) {
               "of the screen, after which it ends; default: when the window is closed")
       .range(1, 1000000);
   command.flag("--no-window", options->noWindow, "draws into an image: needs no display");
-  command.option("--script", options->script, "input from a file (docs/thesis.md)");
   command.option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
   command.option("--save", options->save,
                  "NAME.exr: at the end the capture, with settings, result and picture beside it");

@@ -159,11 +159,6 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
     state.height = std::clamp(size[1], 1, kLargestSide);
     changes.scene = true;
   }
-  // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).
-  ImGui::InputInt("model turns in frames", &panel.headTurn, 60);
-  if (source.fixedLights().empty()) ImGui::InputInt("lights turn in frames", &panel.lightTurn, 60);
-  panel.headTurn = std::clamp(panel.headTurn, 0, kLongestTurn);
-  panel.lightTurn = std::clamp(panel.lightTurn, 0, kLongestTurn);
   ImGui::TextDisabled(
       "drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
   return changes;
@@ -199,7 +194,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawMaterials(state));
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
-  changes.add(drawCost(state, panel, frames));
+  drawCost(panel, frames);
   if (ImGui::CollapsingHeader("Save")) {
     ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
     if (ImGui::Button("save capture, settings, result and picture")) panel.save = true;
