@@ -46,8 +46,8 @@ void addToneMapOption(const Command& command, Map& map) {
       "of PNGs: none (default), agx (Sobotka) or aces (Narkowicz's fit); exposure comes before");
 }
 
-// In lower case.
-std::string extensionOf(const std::filesystem::path& path);
+// True of names that captures have: .exr and .json, and not those of models.
+bool isCaptureFile(const std::filesystem::path& path);
 
 // Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
 // that says it is something else.

@@ -55,15 +55,10 @@ const std::set<std::string> kNotOfTheScene = {
     "--set",    "--mode",       "--debug",    "--device", "--window-size", "--no-window", "--validate",
     "--frames", "--screenshot", "--exposure", "--save",   "--tonemap",     "--help"};
 
-bool isCapture(const std::string& path) {
-  const std::string extension = extensionOf(path);
-  return extension == ".exr" || extension == ".json";
-}
-
 std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
-  if (!scene.model.empty() && isCapture(scene.model)) {
+  if (!scene.model.empty() && isCaptureFile(scene.model)) {
     for (const GivenOption& option : command.given())
       if (!option.positional && kNotOfTheScene.count(option.name) == 0)
         throw UsageError(option.name + ": " + scene.model + " is a capture, whose scene is what it holds");
