@@ -47,13 +47,12 @@ struct Options {
   int frames = 0;
   std::string screenshot, save;
   float exposure = 0;
-  std::optional<ToneMap> toneMap;  // absent: none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
-const std::set<std::string> kNotOfTheScene = {
-    "--set",    "--mode",       "--debug",    "--device", "--window-size", "--no-window", "--validate",
-    "--frames", "--screenshot", "--exposure", "--save",   "--tonemap",     "--help"};
+const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",      "--debug",    "--device",
+                                              "--window-size", "--no-window", "--validate", "--frames",
+                                              "--screenshot",  "--exposure",  "--save",     "--help"};
 
 std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
@@ -90,11 +89,9 @@ ReplaySettings parsed(const SettingsOptions& options) {
 
 SceneToView sceneOf(const Command& command, const Options& options) {
   const ReplaySettings settings = parsed(options.settings);
-  return {opener(command, options.scene),
-          [settings, exposure = options.exposure, toneMap = options.toneMap](ViewState& state) {
+  return {opener(command, options.scene), [settings, exposure = options.exposure](ViewState& state) {
             state.settings = settings;
             if (exposure > 0) state.display.exposure = exposure;
-            if (toneMap) state.display.toneMap = *toneMap;
             if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
           }};
 }
@@ -145,7 +142,6 @@ void addViewCommand(const Command& app) {
   command.option("--save", options->save,
                  "NAME.exr: at the end the capture, with settings, result and picture beside it");
   command.option("--exposure", options->exposure, "factor; default: from the first picture").positive();
-  addToneMapOption(command, options->toneMap);
   command.flag("--validate", options->validate,
                "with the Vulkan validation layers, whose messages are an error");
   command.run([options, command] { view(command, *options); });

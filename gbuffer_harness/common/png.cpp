@@ -47,7 +47,7 @@ void savePicture(const std::filesystem::path& png, const Image& screen) {
   writeWhole(png, [&](const auto& file) { writePng(file, screen.width, screen.height, bytes); });
 }
 
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map) {
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
   constexpr std::array<std::uint8_t, 3> kMagenta = {255, 0, 255};
   std::vector<std::uint8_t> rgb(image.pixels() * 3);
   const int used = std::min(image.channels, 3);
@@ -56,7 +56,6 @@ std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map
     const bool finite = std::all_of(pixel, pixel + used, [](float value) { return std::isfinite(value); });
     std::array<float, 3> color;
     for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] = pixel[std::min(c, used - 1)] * exposure;
-    color = toneMapped(map, color);
     for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbByte(color[c]) : kMagenta[c];
   }
   return rgb;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/image.h"
-#include "common/tone_map.h"
 
 namespace pellucid::harness {
 
@@ -17,9 +16,9 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
 // A screenshot: RGBA, 0..1, values of the screen; a whole file or none. Throws InputError likewise.
 void savePicture(const std::filesystem::path& png, const Image& screen);
 
-// Linear to display: times `exposure`, tone mapped, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
+// Linear to display: times `exposure`, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
 // One channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f, ToneMap map = ToneMap::None);
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f);
 
 // The factor that brings the 99th percentile of the values above 0 to 0.8: below white, above the middle.
 float autoExposure(const Image& image);

@@ -120,9 +120,6 @@ Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames&
   }
   changes.shown |=
       ImGui::SliderFloat("exposure", &display.exposure, 0.01f, 100, "%.3g", ImGuiSliderFlags_Logarithmic);
-  int tone = static_cast<int>(display.toneMap);
-  changes.shown |= combo("tone mapping", tone, toneMapNames());
-  display.toneMap = static_cast<ToneMap>(tone);
   const Capture& capture = frames.outline();  // whole, as those of all truths are
   if (!capture.truth) return changes;
   const Comparison error = compareImages(frames.image(Shown::After), capture.truth->image, capture.material);

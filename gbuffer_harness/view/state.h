@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "common/tone_map.h"
 #include "raster/view_camera.h"
 #include "replay/frame.h"
 
@@ -30,7 +29,6 @@ enum class Shown {
 
 struct Display {
   float exposure = 0;  // factor; 0: from the first picture, autoExposure()
-  ToneMap toneMap = ToneMap::None;
   Shown shown = Shown::After;
   bool split = false;  // `left` is shown to the left of the split
   Shown left = Shown::Before;
