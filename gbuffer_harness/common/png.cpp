@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/error.h"
+#include "common/srgb.h"
 #include "common/whole_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -18,16 +19,6 @@
 #pragma GCC diagnostic pop
 
 namespace pellucid::harness {
-
-namespace {
-
-std::uint8_t srgbByte(float linear) {
-  const float x = std::clamp(linear, 0.0f, 1.0f);
-  const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
-}
-
-}  // namespace
 
 void writePng(const std::filesystem::path& path, int width, int height,
               const std::vector<std::uint8_t>& rgb) {
@@ -56,7 +47,7 @@ std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
     const bool finite = std::all_of(pixel, pixel + used, [](float value) { return std::isfinite(value); });
     std::array<float, 3> color;
     for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] = pixel[std::min(c, used - 1)] * exposure;
-    for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbByte(color[c]) : kMagenta[c];
+    for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbOf(double(color[c])) : kMagenta[c];
   }
   return rgb;
 }
