@@ -24,7 +24,7 @@ frame() {
   mv "$file.frame2.exr" "$file.turned.exr"
   rm "$file.frame1.exr"
   "$pellucid" replay "$file.exr" --repeat 0 -o "$file.out.exr" >>"$file.log"
-  "$pellucid" sheet "$file.out.exr" "$file.exr@truth" --columns 2 -o "$file.png" >>"$file.log"
+  /usr/bin/python3 "$(dirname "$0")/sheet.py" "$file.out.exr" "$file.exr@truth" -o "$file.png"
 }
 
 # Grazes brow, nose and chest.

@@ -8,7 +8,6 @@ pellucid=$1 work=$2 pictures=$3 page=$4 models=${5:-}
 seconds=${SECONDS_EACH:-30} size=${SIZE:-256x192}
 mkdir -p "$work" "$pictures"
 
-wax='{"subsurface_color": [0.8, 0.65, 0.4], "subsurface_radius": 1, "subsurface_radius_scale": [1, 1, 1]}'
 leaf='{"subsurface_color": [0.2, 0.4, 0.05], "subsurface_radius": 0.06, "subsurface_radius_scale": [1, 1, 1]}'
 credit= device=
 head=(--procedural head --set view=1) ear=(--procedural ear) sky=(--procedural ear --set backLight=0 --set frontLight=0)
@@ -34,7 +33,7 @@ scene() {
   "$pellucid" truth "$@" --size "$size" --seconds "$seconds" --overwrite -o "$file.exr" >"$file.log" 2>&1 || { cat "$file.log" >&2; exit 1; }
   "$pellucid" replay "$file.exr" --repeat 0 --set features=none -o "$file.before.exr" >/dev/null
   device=$("$pellucid" replay "$file.exr" --repeat 0 "${replay[@]}" -o "$file.after.exr" | sed -n 1p)
-  "$pellucid" sheet "$file.before.exr" "$file.after.exr" "$file.exr@truth" --columns 3 -o "$pictures/$name.png" >/dev/null
+  /usr/bin/python3 "$(dirname "$0")/sheet.py" "$file.before.exr" "$file.after.exr" "$file.exr@truth" -o "$pictures/$name.png"
   printf '| %s. %s | ![%s: before, after, path traced](%s/%s.png) | %s |\n' "$title" "$text" "$title" \
     "$(realpath --relative-to "$(dirname "$page")" "$pictures")" "$name" "$(error "$file")" >>"$body"
 }
@@ -46,7 +45,6 @@ scene head Head "A key and a rim light. Light comes through ears and nose, and s
 scene ear Ear "A strong light behind the ear, a weak one before." -- "${ear[@]}"
 scene shell "Hollow shell" "A ball of skin with a wall of 2 mm, lit from behind. The result is wrong here: the rim is too bright, and the light that crosses the hollow is missing." -- --procedural hollow_sphere --material '*=skin2' --set extent=22
 scene marble Marble "A ring of marble, 5 mm thick, lit from behind." -- --procedural torus --material '*=marble' --set tube=0.2
-scene wax Wax "A carved sheet of wax before a lamp, described by OpenPBR's color and radius." -- --procedural noise --material "*=$wax"
 scene milk Milk "Drops of whole milk." -- --procedural spheres --material '*=whole_milk'
 scene leaf Leaves "Blades of grass, 0.4 mm thick." -- --procedural blades --material "*=$leaf" --shadow-size 2048
 scene sky "Sky only" "No light but a sky. Its light spreads, and that of hidden faces comes through." -- "${sky[@]}" --environment gradient:0.6,0.8,1.2:0.4,0.3,0.2

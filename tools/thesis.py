@@ -7,7 +7,8 @@
     python3 thesis.py PELLUCID FOLDER views R,G,B [MODEL.glb OPTION...]   views.png: six views by a color filter
     python3 thesis.py PELLUCID FOLDER perception ANSWERS.csv              table 5.4
 
-OPTION is of `pellucid capture`. Without a model, the procedural ear is drawn. Needs numpy, scipy and matplotlib.
+OPTION is of `pellucid capture`. Without a model, the procedural ear is drawn. Needs numpy, scipy, matplotlib
+and what sheet.py needs.
 """
 import csv
 import itertools
@@ -53,6 +54,8 @@ class Pellucid:
 
 
 def figures(pellucid, source):
+    from sheet import sheet
+
     size = [] if "--size" in source else ["--size", "256x256"]
     images = []  # file, label, exposure
     replayed = {}  # files by capture and options: figures share pictures
@@ -96,9 +99,8 @@ def figures(pellucid, source):
     pellucid.run("replay", pellucid.path("scene.exr"), "--repeat", 0, "--set", "gather=16", "-o", physical)
     pellucid.run("truth", *source, *size, "--seconds", 20, "--overwrite", "-o", truth)
     images += [(physical, "5.3 Pellucid", 1), (truth + "@truth", "5.3 path traced, 20 s", 1)]
-    pellucid.run("sheet", *[file for file, _, _ in images], "--columns", 5, "--exposure",
-                 ",".join(str(exposure) for _, _, exposure in images), *["--label=" + label for _, label, _ in images],
-                 "-o", pellucid.path("thesis.png"))
+    files, labels, exposures = zip(*images)
+    sheet(files, pellucid.path("thesis.png"), 5, exposures, labels)
     print("wrote", pellucid.path("thesis.png"))
     angles(pellucid)
 
@@ -297,12 +299,14 @@ def dots(pellucid, source, entries=12, steps=6, threshold=.25):
 
 def views(pellucid, color, source):
     """The camera stands -50 to 50 degrees from the front."""
+    from sheet import sheet
+
     frames = [32, 34, 36, 2, 4, 6]
     chosen = ",".join(map(str, sorted(frames)))
     pellucid.run("capture", *source, "--turntable", 36, "--orbit", "--frames", chosen, "-o", pellucid.path("capture.##.exr"))
     pellucid.run("replay", pellucid.path("capture.##.exr"), "--frames", chosen, "--overwrite", "--set", "filter=" + color, "-o",
                  pellucid.path("view.##.exr"))
-    pellucid.run("sheet", *[pellucid.path(f"view.{frame:02}.exr") for frame in frames], "-o", pellucid.path("views.png"))
+    sheet([pellucid.path(f"view.{frame:02}.exr") for frame in frames], pellucid.path("views.png"))
     print("wrote", pellucid.path("views.png"))
 
 

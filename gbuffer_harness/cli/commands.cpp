@@ -13,10 +13,8 @@ void addCommands(const Command& app) {
   addEvaluateCommand(app);
   addFlickerCommand(app);
   addCaptureCommand(app);
-  addSheetCommand(app);
   addStressCommand(app);
   addViewCommand(app);
-  addShadersCommand(app);
 }
 
 }  // namespace pellucid::harness

@@ -18,9 +18,7 @@ void addTruthCommand(const Command& app);
 void addEvaluateCommand(const Command& app);
 void addFlickerCommand(const Command& app);
 void addCaptureCommand(const Command& app);
-void addSheetCommand(const Command& app);
 void addStressCommand(const Command& app);
 void addViewCommand(const Command& app);
-void addShadersCommand(const Command& app);
 
 }  // namespace pellucid::harness

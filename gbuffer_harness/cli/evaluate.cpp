@@ -12,7 +12,6 @@
 #include "cli/commands.h"
 #include "common/compare.h"
 #include "common/error.h"
-#include "common/png.h"
 #include "metrics/eye.h"
 #include "replay/replay.h"
 
@@ -51,7 +50,8 @@ std::string tintCells(const Tint& tint) {
 
 void print(const std::vector<Evaluation>& evaluations) {
   std::printf(
-      "Relative RMSE and mean bias (R G B) against the truth, %dx%d averages of which half and more are surface; "
+      "Relative RMSE and mean bias (R G B) against the truth, %dx%d averages of which half and more are "
+      "surface; "
       "unlit: pixels without front irradiance.\n\n"
       "| capture | model | all | bias | unlit | bias |\n|-|-|-|-|-|-|\n",
       kTruthBox, kTruthBox);
@@ -59,7 +59,8 @@ void print(const std::vector<Evaluation>& evaluations) {
     std::printf("| %s | %s | %s | %s |\n", e.capture.c_str(), e.model.c_str(), errorCells(e.all).c_str(),
                 errorCells(e.unlit).c_str());
   std::printf(
-      "\nWhat the eye sees against the truth: isolated pixels (those of the truth in parentheses), spots that the truth "
+      "\nWhat the eye sees against the truth: isolated pixels (those of the truth in parentheses), spots "
+      "that the truth "
       "lacks, tint of 8x8 averages (R G B, then red over green), FLIP.\n\n"
       "| capture | model | isolated | spots | tint | red/green | FLIP mean | 99th percentile |\n"
       "|-|-|-|-|-|-|-|-|\n");
@@ -72,7 +73,7 @@ void print(const std::vector<Evaluation>& evaluations) {
 
 struct Options {
   std::vector<std::string> captures;
-  std::string device, picture, rows = "models";
+  std::string device, rows = "models";
 };
 
 struct Model {
@@ -103,29 +104,6 @@ std::vector<Model> samples() {
   return all;
 }
 
-Image replayed(Replayer& replayer, const Capture& capture, const std::vector<PellucidMaterial>& materials,
-               ReplaySettings settings) {
-  settings.preExposure = 0;  // as `pellucid replay` has it
-  return rgb(replayer.run(capture, materials, settings).output);
-}
-
-// thesis | light-space thickness | the default | truth, under one exposure.
-void writePicture(const std::string& path, const Capture& capture,
-                  const std::vector<PellucidMaterial>& materials, Replayer& replayer) {
-  std::vector<Image> images;
-  for (const ReplaySettings& settings : {thesisSettings(), ReplaySettings(), gather(kDefaultGatherSamples)})
-    images.push_back(replayed(replayer, capture, materials, settings));
-  images.push_back(capture.truth->image);
-  std::vector<const Image*> pointers;
-  for (Image& image : images) {
-    for (std::size_t i = 0; i < capture.material.size(); ++i)
-      if (capture.material[i] == 0) std::fill_n(&image.data[3 * i], 3, 0.0f);
-    pointers.push_back(&image);
-  }
-  const Image picture = contactSheet(pointers, static_cast<int>(images.size()));
-  writePng(path, picture.width, picture.height, toSrgb(picture, autoExposure(images.back())));
-}
-
 void run(const Options& options) {
   Device device({options.device, false});
   Replayer replayer(device);
@@ -139,13 +117,13 @@ void run(const Options& options) {
     const std::string name =
         file.extension() == ".json" ? file.parent_path().filename().string() : file.stem().string();
     for (const Model& model : options.rows == "models" ? models() : samples()) {
-      const Image image = replayed(replayer, capture, materials, model.settings);
+      ReplaySettings settings = model.settings;
+      settings.preExposure = 0;  // as `pellucid replay` has it
+      const Image image = rgb(replayer.run(capture, materials, settings).output);
       evaluations.push_back({name, model.name, compared(capture, image, Subset::All),
                              compared(capture, image, Subset::Unlit),
                              measureEye(image, capture.truth->image, mask, &capture)});
     }
-    if (!options.picture.empty() && &path == &options.captures.front())
-      writePicture(options.picture, capture, materials, replayer);
   }
   print(evaluations);
 }
@@ -159,8 +137,6 @@ void addEvaluateCommand(const Command& app) {
   command.option("captures", options->captures, "captures with truth").required();
   command.option("--rows", options->rows, "models, or samples: 0, 8 and 16 of the gather")
       .oneOf({"models", "samples"});
-  command.option("--picture", options->picture,
-                 "PNG of the first capture: thesis, light-space thickness, the default, truth");
   command.option("--device", options->device, "part of the Vulkan device's name");
   command.run([options] { run(*options); });
 }

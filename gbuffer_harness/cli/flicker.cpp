@@ -75,11 +75,6 @@ struct Row {
   std::vector<Flicker> steps;        // of a path, frame by frame
 };
 
-bool isCaptureFile(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".exr" || extension == ".json";
-}
-
 std::vector<int> parsePixels(const std::string& text) {
   std::vector<int> pixels;
   for (const std::string& part : split(text, ',')) {

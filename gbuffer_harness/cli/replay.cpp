@@ -67,7 +67,6 @@ struct Options {
   std::string input, output, device, triptych, frames;
   bool png = false, stats = false, overwrite = false;
   float exposure = 0;
-  ToneMap toneMap = ToneMap::None;
   int jobs = 2;
   std::optional<uint32_t> repeat;
   SettingsOptions settings;
@@ -114,7 +113,7 @@ void writeTriptych(const Options& options, const Capture& capture,
   multiply(through, capture.albedo);
   multiply(before, capture.albedo);
   const Image picture = contactSheet({&before, &through, &after}, 3);
-  writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure, options.toneMap));
+  writePng(options.triptych, picture.width, picture.height, toSrgb(picture, exposure));
   std::printf("wrote %s (before | translucency | after)\n", options.triptych.c_str());
 }
 
@@ -143,7 +142,7 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
                 const Device& device, const Replayed& frame, const Image& image, bool png, float exposure) {
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"), [&](const auto& file) {
-      std::vector<std::uint8_t> picture = toSrgb(image, exposure, options.toneMap);
+      std::vector<std::uint8_t> picture = toSrgb(image, exposure);
       if (frame.blocks) drawBlockMap(*frame.blocks, image.width, image.height, picture);
       writePng(file, image.width, image.height, picture);
     });
@@ -305,10 +304,6 @@ void replay(const Options& options) {
   requireExr("-o", options.output);
   if (!options.triptych.empty() && settings.debugView != PELLUCID_DEBUG_NONE)
     throw UsageError("--triptych shows results and cannot be combined with --debug");
-  if (options.toneMap != ToneMap::None && settings.debugView != PELLUCID_DEBUG_NONE)
-    throw UsageError("--tonemap: a debug view holds data, which a tone map would change");
-  if (options.toneMap != ToneMap::None && !wantsPng(options, settings) && options.triptych.empty())
-    throw UsageError("--tonemap is of PNGs: --png or --triptych");
   const bool isSequence = !options.frames.empty() || (options.input.find('#') != std::string::npos &&
                                                       !std::filesystem::exists(options.input));
   if (!isSequence) {
@@ -349,7 +344,6 @@ void addReplayCommand(const Command& app) {
   command.option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command.option("--exposure", options->exposure, "factor for PNGs; default: from the picture").positive();
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
-  addToneMapOption(command, options->toneMap);
   options->settings.blocks = true;
   options->settings.addTo(command);
   command.run([options] { replay(*options); });

@@ -117,10 +117,13 @@ std::string SettingsOptions::text() const {
   return all;
 }
 
-std::string extensionOf(const std::filesystem::path& path) { return lower(path.extension().string()); }
+bool isCaptureFile(const std::filesystem::path& path) {
+  const std::string extension = lower(path.extension().string());
+  return extension == ".exr" || extension == ".json";
+}
 
 void requireExr(const std::string& option, const std::filesystem::path& path) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = lower(path.extension().string());
   if (!extension.empty() && extension != ".exr")
     throw UsageError(option + ": \"" + path.string() + "\" is written as EXR and cannot be called " +
                      extension);

@@ -7,7 +7,6 @@
 
 #include "capture/manifest.h"
 #include "cli/command.h"
-#include "common/tone_map.h"
 #include "replay/frame.h"
 
 namespace pellucid::harness {
@@ -37,17 +36,8 @@ private:
 std::string settingsJson(const ReplaySettings& settings);
 std::string debugOption(const ReplaySettings& settings);
 
-// --tonemap of the commands that write pictures. `map`: a ToneMap, or an optional one, which stays empty
-// without the option.
-template <class Map>
-void addToneMapOption(const Command& command, Map& map) {
-  command.word(
-      "--tonemap", toneMapNames(), [&map](std::size_t index) { map = static_cast<ToneMap>(index); },
-      "of PNGs: none (default), agx (Sobotka) or aces (Narkowicz's fit); exposure comes before");
-}
-
-// In lower case.
-std::string extensionOf(const std::filesystem::path& path);
+// True of names that captures have: .exr and .json, and not those of models.
+bool isCaptureFile(const std::filesystem::path& path);
 
 // Throws UsageError, naming `option`, for a name with another extension than .exr: EXR would be in a file
 // that says it is something else.

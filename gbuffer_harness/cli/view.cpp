@@ -45,25 +45,19 @@ struct Options {
   std::string windowSize = "1280x800";
   bool noWindow = false, validate = false;
   int frames = 0;
-  std::string script, screenshot, save;
+  std::string screenshot, save;
   float exposure = 0;
-  std::optional<ToneMap> toneMap;  // absent: none
 };
 
 // Options of the viewer and of the replay; all others are options of the scene.
-const std::set<std::string> kNotOfTheScene = {
-    "--set",    "--mode",   "--debug",      "--device",   "--window-size", "--no-window", "--validate",
-    "--frames", "--script", "--screenshot", "--exposure", "--save",        "--tonemap",   "--help"};
-
-bool isCapture(const std::string& path) {
-  const std::string extension = extensionOf(path);
-  return extension == ".exr" || extension == ".json";
-}
+const std::set<std::string> kNotOfTheScene = {"--set",         "--mode",      "--debug",    "--device",
+                                              "--window-size", "--no-window", "--validate", "--frames",
+                                              "--screenshot",  "--exposure",  "--save",     "--help"};
 
 std::function<std::unique_ptr<Source>(Device&)> opener(const Command& command, const CaptureOptions& scene) {
   if (!scene.environment.empty())
     throw UsageError("--environment: is traced by rays, which takes too long; make a capture and view that");
-  if (!scene.model.empty() && isCapture(scene.model)) {
+  if (!scene.model.empty() && isCaptureFile(scene.model)) {
     for (const GivenOption& option : command.given())
       if (!option.positional && kNotOfTheScene.count(option.name) == 0)
         throw UsageError(option.name + ": " + scene.model + " is a capture, whose scene is what it holds");
@@ -93,11 +87,9 @@ ReplaySettings parsed(const SettingsOptions& options) {
 
 SceneToView sceneOf(const Command& command, const Options& options) {
   const ReplaySettings settings = parsed(options.settings);
-  return {opener(command, options.scene),
-          [settings, exposure = options.exposure, toneMap = options.toneMap](ViewState& state) {
+  return {opener(command, options.scene), [settings, exposure = options.exposure](ViewState& state) {
             state.settings = settings;
             if (exposure > 0) state.display.exposure = exposure;
-            if (toneMap) state.display.toneMap = *toneMap;
             if (settings.debugView != PELLUCID_DEBUG_NONE) state.display.shown = Shown::Debug;
           }};
 }
@@ -120,7 +112,6 @@ void view(const Command& command, const Options& options) {
   application.window = !options.noWindow;
   setWindowSize(options.windowSize, application);
   application.frames = options.frames;
-  application.script = options.script;
   application.screenshot = options.screenshot;
   application.save = options.save;
   application.settingsText = settingsJson;
@@ -145,12 +136,10 @@ void addViewCommand(const Command& app) {
               "of the screen, after which it ends; default: when the window is closed")
       .range(1, 1000000);
   command.flag("--no-window", options->noWindow, "draws into an image: needs no display");
-  command.option("--script", options->script, "input from a file (docs/thesis.md)");
   command.option("--screenshot", options->screenshot, "PNG of the last frame of the screen");
   command.option("--save", options->save,
                  "NAME.exr: at the end the capture, with settings, result and picture beside it");
   command.option("--exposure", options->exposure, "factor; default: from the first picture").positive();
-  addToneMapOption(command, options->toneMap);
   command.flag("--validate", options->validate,
                "with the Vulkan validation layers, whose messages are an error");
   command.run([options, command] { view(command, *options); });

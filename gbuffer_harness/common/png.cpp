@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/error.h"
+#include "common/srgb.h"
 #include "common/whole_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -14,21 +15,10 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wconversion"
-#include <stb/stb_easy_font.h>
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
 namespace pellucid::harness {
-
-namespace {
-
-std::uint8_t srgbByte(float linear) {
-  const float x = std::clamp(linear, 0.0f, 1.0f);
-  const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
-}
-
-}  // namespace
 
 void writePng(const std::filesystem::path& path, int width, int height,
               const std::vector<std::uint8_t>& rgb) {
@@ -48,7 +38,7 @@ void savePicture(const std::filesystem::path& png, const Image& screen) {
   writeWhole(png, [&](const auto& file) { writePng(file, screen.width, screen.height, bytes); });
 }
 
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map) {
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure) {
   constexpr std::array<std::uint8_t, 3> kMagenta = {255, 0, 255};
   std::vector<std::uint8_t> rgb(image.pixels() * 3);
   const int used = std::min(image.channels, 3);
@@ -57,8 +47,7 @@ std::vector<std::uint8_t> toSrgb(const Image& image, float exposure, ToneMap map
     const bool finite = std::all_of(pixel, pixel + used, [](float value) { return std::isfinite(value); });
     std::array<float, 3> color;
     for (int c = 0; c < 3; ++c) color[static_cast<std::size_t>(c)] = pixel[std::min(c, used - 1)] * exposure;
-    color = toneMapped(map, color);
-    for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbByte(color[c]) : kMagenta[c];
+    for (std::size_t c = 0; c < 3; ++c) rgb[i * 3 + c] = finite ? srgbOf(double(color[c])) : kMagenta[c];
   }
   return rgb;
 }
@@ -85,30 +74,6 @@ Image contactSheet(const std::vector<const Image*>& images, int columns, int gap
       std::copy_n(images[static_cast<std::size_t>(i)]->at(0, y), row,
                   sheet.at(i % columns * (first.width + gap), i / columns * (first.height + gap) + y));
   return sheet;
-}
-
-std::vector<TextRect> textRects(const std::string& words) {
-  struct Vertex {
-    float x, y, z;
-    unsigned char color[4];
-  };
-  std::string writable = words;
-  std::vector<Vertex> vertices(writable.size() * 64 + 64);
-  const int quads = stb_easy_font_print(0, 0, writable.data(), nullptr, vertices.data(),
-                                        static_cast<int>(vertices.size() * sizeof(Vertex)));
-  std::vector<TextRect> rects;
-  for (int q = 0; q < quads; ++q) {
-    const Vertex &a = vertices[static_cast<std::size_t>(4 * q)],
-                 &b = vertices[static_cast<std::size_t>(4 * q + 2)];
-    rects.push_back(
-        {static_cast<int>(a.x), static_cast<int>(a.y), static_cast<int>(b.x), static_cast<int>(b.y)});
-  }
-  return rects;
-}
-
-int textWidth(const std::string& words) {
-  std::string writable = words;
-  return stb_easy_font_width(writable.data());
 }
 
 }  // namespace pellucid::harness

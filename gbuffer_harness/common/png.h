@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/image.h"
-#include "common/tone_map.h"
 
 namespace pellucid::harness {
 
@@ -17,9 +16,9 @@ void writePng(const std::filesystem::path& path, int width, int height, const st
 // A screenshot: RGBA, 0..1, values of the screen; a whole file or none. Throws InputError likewise.
 void savePicture(const std::filesystem::path& png, const Image& screen);
 
-// Linear to display: times `exposure`, tone mapped, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
+// Linear to display: times `exposure`, the exact sRGB curve (IEC 61966-2-1), clamped to 0..255.
 // One channel becomes gray, channels past the third are left out. NaN and infinity are magenta.
-std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f, ToneMap map = ToneMap::None);
+std::vector<std::uint8_t> toSrgb(const Image& image, float exposure = 1.0f);
 
 // The factor that brings the 99th percentile of the values above 0 to 0.8: below white, above the middle.
 float autoExposure(const Image& image);
@@ -27,15 +26,5 @@ float autoExposure(const Image& image);
 // Images of one size and channel count in rows of `columns`, the first at the top left, with black gaps of
 // `gap` pixels; what the last row lacks is black. columns: >= 1.
 Image contactSheet(const std::vector<const Image*>& images, int columns, int gap = 4);
-
-struct TextRect {
-  int left, top, right, bottom;  // pixels
-};
-
-inline constexpr int kTextHeight = 9;  // capitals and their margin
-
-// ASCII words as rectangles to fill, right and down of (0, 0).
-std::vector<TextRect> textRects(const std::string& words);
-int textWidth(const std::string& words);
 
 }  // namespace pellucid::harness

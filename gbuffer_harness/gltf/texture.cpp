@@ -39,12 +39,6 @@ TextureWrap wrapOf(const GltfDocument& document, int mode, const std::string& fi
   }
 }
 
-// The inverse of linearOf().
-std::uint8_t srgbOf(double linear) {
-  const double v = linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
-}
-
 using Rgba = std::array<double, 4>;
 
 // A texture as a factor: its color, or its alpha, and 1 in what remains.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <numbers>
 
@@ -160,12 +161,6 @@ const Name kNames[] = {
     {Role::Albedo, Match::Holds, "diffusefilter", "V-Ray's diffuse color"},
     {Role::Albedo, Match::Holds, "diffusecolor", "a diffuse color"},
     {Role::Albedo, Match::Is, "diffuse", "V-Ray's diffuse color"},
-    {Role::Normal, Match::Is, "n", "a pass of normals"},
-    {Role::Normal, Match::Is, "nn", "RenderMan's normals"},
-    {Role::Normal, Match::Ends, "normal", "a pass of normals"},
-    {Role::Normal, Match::Ends, "normals", "a pass of normals"},
-    {Role::Normal, Match::Holds, "gbuffera", "Unreal's normals"},
-    {Role::Normal, Match::Holds, "normal", "normals"},
     {Role::Material, Match::Holds, "indexma", "Blender's Material Index"},
     {Role::Material, Match::Holds, "materialindex", "Blender's Material Index"},
     {Role::Material, Match::Holds, "materialid", "a material's number"},
@@ -208,7 +203,7 @@ bool fits(const std::string& name, const Name& known) {
 }
 
 // The role's buffer has three numbers a pixel.
-bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Normal || role == Role::Albedo; }
+bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Albedo; }
 
 // A single number may be the first of a color: RenderDoc saves every texture as one, and V-Ray every number.
 bool hasShapeOf(Role role, const ChannelGroup& group) {
@@ -227,15 +222,17 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
   return names;
 }
 
-// True of passes of specular light, whose names hold the names of diffuse passes, too.
-bool isSpecular(const std::string& name) {
-  return name.find("specular") != std::string::npos || name.find("reflect") != std::string::npos ||
-         name.find("refract") != std::string::npos;
+// True of normals, and of passes of specular light, whose names hold the names of diffuse passes, too.
+bool isNoDiffuseLight(const std::string& name) {
+  constexpr const char* kParts[] = {"normal", "gbuffera", "specular", "reflect", "refract"};
+  return name == "n" || name == "nn" ||
+         std::any_of(std::begin(kParts), std::end(kParts),
+                     [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
 bool hasName(const ChannelGroup& group, const Name& known) {
   const std::vector<std::string> names = namesOf(group);
-  if (known.role == Role::Irradiance && isSpecular(names[0])) return false;
+  if (known.role == Role::Irradiance && isNoDiffuseLight(names[0])) return false;
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return fits(name, known); });
 }
 
@@ -268,7 +265,7 @@ bool isTaken(const std::map<Role, Guess>& guesses, const ChannelGroup& group) {
 }  // namespace
 
 const char* roleName(Role role) {
-  constexpr const char* kKeys[] = {"frontDepth", "backDepth", "irradiance", "normal", "albedo", "material"};
+  constexpr const char* kKeys[] = {"frontDepth", "backDepth", "irradiance", "albedo", "material"};
   return kKeys[static_cast<std::size_t>(role)];
 }
 

@@ -43,7 +43,6 @@ private:
   void doubt(const std::string& key, const std::string& sentence);
   void addDepths();
   void addIrradiance();
-  void leaveOutNormals();
   std::optional<std::map<long, std::size_t>> storedIds(const Image& image) const;
   void mapGivenIds(const Image& image, Json& json);
   void mapFoundIds(const std::map<long, std::size_t>& stored, Json& json);
@@ -184,13 +183,6 @@ void Builder::addIrradiance() {
   read(Role::Albedo);
   result_.json["buffers"]["albedo"] = sourceOf(Role::Albedo);
   say(Role::Albedo, "");
-}
-
-// Named, so that nothing else takes them.
-void Builder::leaveOutNormals() {
-  if (guesses_.count(Role::Normal))
-    result_.found.push_back("normal: " + guesses_.at(Role::Normal).group.name +
-                            " is not needed: surfaces come from front depth");
 }
 
 // Stored values, and how many pixels hold each. Nothing: too many, or fractions.
@@ -362,7 +354,6 @@ GuessedManifest Builder::build() {
   addDepths();
   addCamera();
   addIrradiance();
-  leaveOutNormals();
   addMaterial();
   addBlackness();
   addAttributes();

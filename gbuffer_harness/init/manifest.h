@@ -32,7 +32,7 @@ std::vector<ChannelGroup> survey(const std::vector<std::filesystem::path>& files
 // The channels of a group as one image. Throws InputError.
 Image readGroup(const ChannelGroup& group);
 
-enum class Role { FrontDepth, BackDepth, Irradiance, Normal, Albedo, Material };
+enum class Role { FrontDepth, BackDepth, Irradiance, Albedo, Material };
 
 // The key of a manifest's "buffers".
 const char* roleName(Role role);

@@ -1,4 +1,4 @@
-// How a capture is run, and the table of its settings: `--set`, JSON files, the viewer's panel, its scripts
+// How a capture is run, and the table of its settings: `--set`, JSON files, the viewer's panel
 // and the frame read the same rows. A new setting is a member here and a row of settings.cpp.
 #pragma once
 

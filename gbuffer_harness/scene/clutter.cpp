@@ -1,9 +1,6 @@
-// Scenes of many or irregular surfaces, scattered from the seed.
-#include <array>
+// Scenes of many surfaces, scattered from the seed.
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -24,65 +21,6 @@ public:
 private:
   std::mt19937 engine_;
 };
-
-// Perlin's improved noise (2002) in two dimensions, and sums of its octaves.
-class Noise {
-public:
-  explicit Noise(unsigned seed);
-  double operator()(double x, double y) const;  // about -1 .. 1, period 256
-  // Octaves of doubled frequency and halved amplitude.
-  double fractal(double x, double y, int octaves) const;
-
-private:
-  std::array<std::uint8_t, 512> permutation_;
-};
-
-double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
-
-// Dot product with one of eight directions of the plane.
-double gradient(std::uint8_t hash, double x, double y) {
-  constexpr double kDirections[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
-  constexpr double kDiagonal = 0.7071067811865476;
-  const auto& [dx, dy] = kDirections[hash & 7];
-  return (hash & 4 ? kDiagonal : 1) * (dx * x + dy * y);
-}
-
-Noise::Noise(unsigned seed) {
-  std::iota(permutation_.begin(), permutation_.begin() + 256, std::uint8_t{0});
-  Random random(seed);
-  for (std::size_t i = 255; i > 0; --i) {
-    std::swap(permutation_[i], permutation_[static_cast<std::size_t>(random() * static_cast<double>(i + 1))]);
-  }
-  for (std::size_t i = 0; i < 256; ++i) permutation_[256 + i] = permutation_[i];
-}
-
-double Noise::operator()(double x, double y) const {
-  const double fx = std::floor(x);
-  const double fy = std::floor(y);
-  const auto i = static_cast<std::size_t>(static_cast<long long>(fx) & 255);
-  const auto j = static_cast<std::size_t>(static_cast<long long>(fy) & 255);
-  x -= fx;
-  y -= fy;
-  const auto corner = [&](std::size_t dx, std::size_t dy) {
-    return gradient(permutation_[permutation_[i + dx] + j + dy], x - static_cast<double>(dx),
-                    y - static_cast<double>(dy));
-  };
-  const double u = fade(x);
-  const double v = fade(y);
-  return std::lerp(std::lerp(corner(0, 0), corner(1, 0), u), std::lerp(corner(0, 1), corner(1, 1), u), v);
-}
-
-double Noise::fractal(double x, double y, int octaves) const {
-  double sum = 0;
-  double amplitude = 1;
-  for (int i = 0; i < octaves; ++i, amplitude /= 2) {
-    // Each octave is shifted, or all of them would vanish together at the lattice points.
-    sum += amplitude * (*this)(x + 17.3 * i, y + 5.7 * i);
-    x *= 2;
-    y *= 2;
-  }
-  return sum;
-}
 
 SceneModel buildSpheres(const SceneParameters& parameters, const OptionValues& options) {
   const double extent = options["extent"];
@@ -156,50 +94,6 @@ SceneModel buildBlades(const SceneParameters& parameters, const OptionValues& op
   return model;
 }
 
-// A solid between two height fields over the xy plane.
-class NoisySheet : public DistanceField {
-public:
-  NoisySheet(unsigned seed, double halfWidth, double thickness, double amplitude, double scale, int octaves)
-      : DistanceField(glm::dvec3(-1.01 * halfWidth, -1.01 * halfWidth, -thickness - 2 * amplitude),
-                      glm::dvec3(1.01 * halfWidth, 1.01 * halfWidth, 2 * amplitude), 1e-3 * thickness),
-        noise_(seed),
-        halfWidth_(halfWidth),
-        thickness_(thickness),
-        amplitude_(amplitude),
-        scale_(scale),
-        octaves_(octaves),
-        // Every octave of the noise has slopes up to about 2.5 amplitudes per cell.
-        steepness_(std::hypot(1, 2.5 * amplitude / scale * octaves)) {}
-
-  double distance(const glm::dvec3& p) const override {
-    const double front = amplitude_ * noise_.fractal(p.x / scale_, p.y / scale_, octaves_);
-    // The back repeats the front's waves elsewhere and half as high, which varies the thickness.
-    const double back =
-        amplitude_ / 2 * noise_.fractal(p.x / scale_ + 91.7, p.y / scale_ + 43.1, octaves_) - thickness_;
-    const double sides = std::max(std::abs(p.x), std::abs(p.y)) - halfWidth_;
-    return std::max(std::max(p.z - front, back - p.z) / steepness_, sides);
-  }
-
-private:
-  Noise noise_;
-  double halfWidth_, thickness_, amplitude_, scale_;
-  int octaves_;
-  double steepness_;
-};
-
-SceneModel buildNoise(const SceneParameters& parameters, const OptionValues& options) {
-  const double extent = options["extent"];
-  SceneModel model;
-  model.camera = frontCamera(parameters, extent);
-  model.radius = extent;
-  model.objects.emplace_back().solid =
-      std::make_unique<NoisySheet>(parameters.seed, 0.45 * extent, options["thickness"], options["amplitude"],
-                                   options["scale"], static_cast<int>(options["octaves"]));
-  model.lights = {lightAt(parameters, {0.2, 0.3, -1}, 1, extent),
-                  lightAt(parameters, {-1, 0.4, 0.3}, 0.5, extent)};
-  return model;
-}
-
 }  // namespace
 
 std::vector<SceneDefinition> clutterScenes() {
@@ -215,14 +109,6 @@ std::vector<SceneDefinition> clutterScenes() {
          {"thickness", 0.4, 1e-4, 1e3, "at the root, mm"},
          kExtent}},
        buildBlades},
-      {{"noise",
-        "Sheet with fractal front and back",
-        {{"thickness", 4, 0.1, 100, "mean, mm"},
-         {"amplitude", 1.2, 0, 10, "of the first octave, mm"},
-         {"scale", 8, 0.1, 1e4, "cell of the first octave, mm"},
-         {"octaves", 5, 1, 10, "of halved amplitude and doubled frequency"},
-         kExtent}},
-       buildNoise},
   };
 }
 

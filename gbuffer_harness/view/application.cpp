@@ -2,10 +2,7 @@
 
 #include <imgui.h>
 #include <algorithm>
-#include <cctype>
-#include <numbers>
 #include <optional>
-#include <set>
 
 #include "capture/exr.h"
 #include "capture/read.h"
@@ -18,7 +15,6 @@
 #include "view/gui.h"
 #include "view/input.h"
 #include "view/panel.h"
-#include "view/script.h"
 #include "window/window.h"
 
 namespace pellucid::harness {
@@ -59,50 +55,6 @@ std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) 
       std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
 }
 
-// A script's mouse and keys, in place of the window's.
-class ScriptedInput {
-public:
-  explicit ScriptedInput(std::vector<ScriptLine> lines) : lines_(std::move(lines)) {}
-
-  bool isDone() const { return next_ == lines_.size(); }
-
-  // Before Gui::begin() of a frame: carries out its lines on the state and on Dear ImGui's input. `other`
-  // takes the lines that are about the window and files.
-  void play(int frame, ViewState& state, Changes& changes,
-            const std::function<void(const ScriptLine&)>& other) {
-    if (lines_.empty()) return;
-    for (; next_ < lines_.size() && lines_[next_].frame <= frame; ++next_) {
-      const ScriptLine& line = lines_[next_];
-      if (applyToState(line, state, changes)) continue;
-      if (line.command == "move")
-        cursor_ = {numberOf(line, 0), numberOf(line, 1)};
-      else if (line.command == "wheel")
-        ImGui::GetIO().MouseWheel = numberOf(line, 0);
-      else if (line.command == "press")
-        held_.insert(line.arguments.front());
-      else if (line.command == "release")
-        held_.erase(line.arguments.front());
-      else
-        other(line);
-    }
-    // Every frame anew: a window's own events would say otherwise.
-    ImGuiIO& io = ImGui::GetIO();
-    io.MousePos = cursor_;
-    io.MouseDown[0] = held_.contains("left");
-    io.MouseDown[1] = held_.contains("right");
-    io.MouseDown[2] = held_.contains("middle");
-    io.KeyShift = held_.contains("shift");
-    for (const char* key : {"w", "a", "s", "d", "e", "q"})
-      io.KeysDown[std::toupper(*key)] = held_.contains(key);
-  }
-
-private:
-  std::vector<ScriptLine> lines_;
-  std::size_t next_ = 0;
-  ImVec2 cursor_ = {-1, -1};
-  std::set<std::string> held_;  // buttons and keys by their names in scripts
-};
-
 class Application {
 public:
   explicit Application(const ApplicationOptions& options)
@@ -110,8 +62,7 @@ public:
         desktop_(options.window ? std::make_unique<Desktop>() : nullptr),
         device_(deviceOptions(options, desktop_.get())),
         width_(options.width),
-        height_(options.height),
-        script_(options.script.empty() ? std::vector<ScriptLine>() : readScript(options.script)) {
+        height_(options.height) {
     if (!device_.canDraw())
       throw DeviceError(device_.description() + " computes but has no queue that draws");
     if (options.window) window_ = std::make_unique<Window>(*desktop_, device_, "Pellucid", width_, height_);
@@ -126,7 +77,7 @@ public:
     int left = kFramesAfterInput;
     while (!done()) {
       if (window_) {
-        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure && script_.isDone();
+        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure;
         window_->events(idle);
         if (idle) left = kFramesAfterInput;
       }
@@ -181,13 +132,11 @@ private:
     ++report_.frames;
     gui_->poll(width_, height_);
     Changes changes;
-    script_.play(passed_, state_, changes, [this](const ScriptLine& line) { carryOut(line); });
     gui_->begin();
     changes.add(controls_.apply(state_, input(), *source_, picture()));
     changes.add(drawPanel(state_, panel_, *frames_, *source_,
                           {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
     followWindow(changes);
-    turn(changes);
     changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture();
@@ -204,7 +153,6 @@ private:
     if (window_ && !window_->present(screen_->image(0), width_, height_)) again = true;
     if (panel_.save) save(panel_.savePath);
     panel_.save = false;
-    writePending();
     return again;
   }
 
@@ -223,14 +171,6 @@ private:
   void report(const std::string& message, bool isError) {
     panel_.message = message;
     panel_.isError = isError;
-  }
-
-  // As captures of turntables have it: the model stays, and camera and lights turn back by its angle.
-  void turn(Changes& changes) {
-    if (panel_.headTurn == 0 && panel_.lightTurn == 0) return;
-    const auto step = [](int frames) { return frames > 0 ? 2 * std::numbers::pi / frames : 0; };
-    const double head = step(panel_.headTurn);
-    changes.add(turnTable(state_, source_->center(), -head, step(panel_.lightTurn) - head));
   }
 
   void followWindow(Changes& changes) {
@@ -269,9 +209,7 @@ private:
     return result;
   }
 
-  void carryOut(const ScriptLine& line);
   void open(const SceneToView& scene);
-  void writePending();
   void save(const std::filesystem::path& capture);
   void screenshot(const std::filesystem::path& file);
 
@@ -289,26 +227,9 @@ private:
   std::unique_ptr<DisplayPass> display_;
   std::unique_ptr<Contexts> contexts_;
   std::unique_ptr<ViewFrames> frames_;
-  ScriptedInput script_;
-  std::vector<std::filesystem::path> pendingScreenshots_, pendingSaves_;
   int passed_ = 0;  // frames, with those that had no screen
   ApplicationReport report_;
 };
-
-void Application::carryOut(const ScriptLine& line) {
-  if (line.command == "save") return pendingSaves_.push_back(line.arguments.front());
-  if (line.command == "turn") {
-    panel_.headTurn = std::clamp(static_cast<int>(numberOf(line, 0)), 0, kLongestTurn);
-    panel_.lightTurn = std::clamp(static_cast<int>(numberOf(line, 1)), 0, kLongestTurn);
-    return;
-  }
-  if (line.command == "screenshot") return pendingScreenshots_.push_back(line.arguments.front());
-  if (!window_) throw InputError(line.where, line.command, "needs a window");
-  const auto side = [&](std::size_t argument) {
-    return std::clamp(static_cast<int>(numberOf(line, argument)), kSmallestWindow, kLargestSide);
-  };
-  window_->resize(side(0), side(1));
-}
 
 void Application::open(const SceneToView& scene) {
   std::unique_ptr<Source> source = scene.open(device_);
@@ -322,13 +243,6 @@ void Application::open(const SceneToView& scene) {
   state_ = std::move(state);
   panel_.colors = falseColorsOf(state_.display, *frames_);
   panel_.cost = {};
-}
-
-void Application::writePending() {
-  for (const auto& file : pendingSaves_) save(file);
-  for (const auto& file : pendingScreenshots_) screenshot(file);
-  pendingSaves_.clear();
-  pendingScreenshots_.clear();
 }
 
 void Application::save(const std::filesystem::path& capture) {

@@ -19,12 +19,12 @@ struct SceneToView {
 };
 
 struct ApplicationOptions {
-  std::string device;              // part of the Vulkan device's name; empty: the fastest kind
-  bool validation = false;         // messages of the validation layers end it with a DeviceError
-  bool window = true;              // false: needs `frames`
-  int width = 1280, height = 800;  // of the window, pixels
-  int frames = 0;                  // of the screen, then it ends; 0: until the window is closed
-  std::filesystem::path script, screenshot, save;  // empty: none. The latter two are written at the end
+  std::string device;                      // part of the Vulkan device's name; empty: the fastest kind
+  bool validation = false;                 // messages of the validation layers end it with a DeviceError
+  bool window = true;                      // false: needs `frames`
+  int width = 1280, height = 800;          // of the window, pixels
+  int frames = 0;                          // of the screen, then it ends; 0: until the window is closed
+  std::filesystem::path screenshot, save;  // written at the end; empty: none
   std::function<std::string(const ReplaySettings&)> settingsText;  // what --set @FILE reads
   SceneToView scene;
 };

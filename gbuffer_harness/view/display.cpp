@@ -114,7 +114,6 @@ void DisplayPass::draw(VkCommandBuffer commandBuffer, const ViewFrames& frames, 
   push.extent[1] = static_cast<float>(capture.height);
   push.scale = picture.width / push.extent[0];
   push.shown = static_cast<std::int32_t>(shown);
-  push.toneMap = static_cast<std::int32_t>(display.toneMap);
   push.channel = display.channel;
   push.exposure = display.exposure;
   push.low = low;

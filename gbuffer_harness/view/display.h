@@ -54,7 +54,7 @@ private:
   struct Push {
     float origin[2], extent[2];
     float scale;
-    std::int32_t shown, toneMap, channel;
+    std::int32_t shown, channel;
     float exposure, low, high;
     std::int32_t isLegend, hasTruth, isFalseColor;
   };

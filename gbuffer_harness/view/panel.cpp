@@ -120,9 +120,6 @@ Changes drawDisplay(ViewState& state, const PanelState& panel, const ViewFrames&
   }
   changes.shown |=
       ImGui::SliderFloat("exposure", &display.exposure, 0.01f, 100, "%.3g", ImGuiSliderFlags_Logarithmic);
-  int tone = static_cast<int>(display.toneMap);
-  changes.shown |= combo("tone mapping", tone, toneMapNames());
-  display.toneMap = static_cast<ToneMap>(tone);
   const Capture& capture = frames.outline();  // whole, as those of all truths are
   if (!capture.truth) return changes;
   const Comparison error = compareImages(frames.image(Shown::After), capture.truth->image, capture.material);
@@ -159,11 +156,6 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
     state.height = std::clamp(size[1], 1, kLargestSide);
     changes.scene = true;
   }
-  // The model turns before the camera, and the lights at their own speed (Whelan 2009, 5.1).
-  ImGui::InputInt("model turns in frames", &panel.headTurn, 60);
-  if (source.fixedLights().empty()) ImGui::InputInt("lights turn in frames", &panel.lightTurn, 60);
-  panel.headTurn = std::clamp(panel.headTurn, 0, kLongestTurn);
-  panel.lightTurn = std::clamp(panel.lightTurn, 0, kLongestTurn);
   ImGui::TextDisabled(
       "drag: orbit; right: look; middle: pan; wheel: zoom\nw a s d e q: walk; shift + drag: light");
   return changes;
@@ -199,7 +191,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawMaterials(state));
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
-  changes.add(drawCost(state, panel, frames));
+  drawCost(panel, frames);
   if (ImGui::CollapsingHeader("Save")) {
     ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
     if (ImGui::Button("save capture, settings, result and picture")) panel.save = true;

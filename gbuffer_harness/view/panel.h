@@ -17,11 +17,9 @@ namespace pellucid::harness {
 // Values that the panel knows besides the state, kept between frames of the screen.
 struct PanelState {
   CostHistory cost;
-  Budget budget;
-  bool measure = false;             // frames are recorded without end, for their times
-  bool followWindow = false;        // the picture is as large as its area
-  int headTurn = 0, lightTurn = 0;  // frames in which the model and the lights turn once; 0: they stand still
-  std::string message;              // of what went wrong or was done last
+  bool measure = false;       // frames are recorded without end, for their times
+  bool followWindow = false;  // the picture is as large as its area
+  std::string message;        // of what went wrong or was done last
   bool isError = false;
   char savePath[512] = "out/view.exr";
   bool save = false;   // asked for in this frame
@@ -29,7 +27,6 @@ struct PanelState {
 };
 
 constexpr float kPanelWidth = 380;
-constexpr int kLongestTurn = 100000;  // frames
 
 // In the right part of a screen of that size.
 Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames, const Source& source,
@@ -46,6 +43,6 @@ bool dragReals(const char* label, double* values, int count, double low, double 
 // Parts of the panel.
 Changes drawMaterials(ViewState& state);
 Changes drawLights(ViewState& state, const Source& source);
-Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames);
+void drawCost(PanelState& panel, const ViewFrames& frames);
 
 }  // namespace pellucid::harness

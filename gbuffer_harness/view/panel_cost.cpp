@@ -1,4 +1,4 @@
-// GPU times of the dispatches, and the budget that holds a frame time.
+// GPU times of the dispatches.
 #include <imgui.h>
 #include <cstdint>
 
@@ -7,10 +7,9 @@
 
 namespace pellucid::harness {
 
-Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) {
-  Changes changes;
-  const bool isNew = panel.cost.add(frames.recorded(), frames.times());
-  if (!ImGui::CollapsingHeader("GPU time", ImGuiTreeNodeFlags_DefaultOpen)) return changes;
+void drawCost(PanelState& panel, const ViewFrames& frames) {
+  panel.cost.add(frames.recorded(), frames.times());
+  if (!ImGui::CollapsingHeader("GPU time", ImGuiTreeNodeFlags_DefaultOpen)) return;
   const PellucidPlan& plan = frames.run(Shown::After).plan();
   ImGui::Text("%.3f ms in %u dispatches; material covers %.1f %%", panel.cost.smoothedSum() / 1000,
               plan.dispatchCount, 100 * frames.coveredPart());
@@ -23,16 +22,6 @@ Changes drawCost(ViewState& state, PanelState& panel, const ViewFrames& frames) 
     ImGui::TextWrapped("skipped: %u x %s (%s)", plan.skips[i].count, plan.skips[i].what,
                        plan.skips[i].reason);
   ImGui::Checkbox("record without end", &panel.measure);
-  ImGui::Checkbox("hold a frame time", &panel.budget.on);
-  if (panel.budget.on) {
-    ImGui::SameLine();
-    ImGui::PushItemWidth(100);
-    ImGui::DragFloat("ms", &panel.budget.milliseconds, 0.01f, 0.01f, 1000, "%.2f");
-    ImGui::PopItemWidth();
-    panel.measure = true;
-    if (isNew) changes.frame |= panel.budget.step(panel.cost.lastSum() / 1000, state.settings);
-  }
-  return changes;
 }
 
 }  // namespace pellucid::harness

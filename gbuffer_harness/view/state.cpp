@@ -66,12 +66,4 @@ void pullLight(Light& light, const Vector3& center, double factor) {
   light.intensity *= factor * factor;
 }
 
-Changes turnTable(ViewState& state, const Vector3& center, double camera, double lights) {
-  state.camera.lens.viewFromWorld = turnedView(state.camera.lens.viewFromWorld, center, camera);
-  for (ViewLight& light : state.lights) light.light = turnedLight(light.light, center, lights);
-  Changes changes;
-  changes.scene = camera != 0 || lights != 0;
-  return changes;
-}
-
 }  // namespace pellucid::harness

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "common/tone_map.h"
 #include "raster/view_camera.h"
 #include "replay/frame.h"
 
@@ -30,7 +29,6 @@ enum class Shown {
 
 struct Display {
   float exposure = 0;  // factor; 0: from the first picture, autoExposure()
-  ToneMap toneMap = ToneMap::None;
   Shown shown = Shown::After;
   bool split = false;  // `left` is shown to the left of the split
   Shown left = Shown::Before;
@@ -75,7 +73,7 @@ ReplaySettings settingsFor(const ViewState& state, Shown shown);
 // True where the picture is looked up in false colors.
 bool isFalseColor(Shown shown);
 
-// Names for the panel and for scripts, in the order of the enumeration.
+// Names for the panel, in the order of the enumeration.
 const std::vector<std::string>& shownNames();
 
 // A light of that type from behind and above, of which 1 arrives at `center`.
@@ -84,10 +82,6 @@ ViewLight newLight(PellucidLightType type, const ViewCamera& camera, const Vecto
 // Carries a light round `center` as the camera sees it: `right` and `up`, radians. Point and spot lights
 // move, and spots go on looking at what they looked at; directional lights turn.
 void dragLight(Light& light, const ViewCamera& camera, const Vector3& center, double right, double up);
-
-// Carries the camera and all lights round the vertical through `center`, radians, counterclockwise from
-// above.
-Changes turnTable(ViewState& state, const Vector3& center, double camera, double lights);
 
 // Multiplies a point or spot light's distance to `center` by `factor` > 0; as much light arrives there as
 // before.

@@ -113,8 +113,6 @@ void Window::size(int& width, int& height) const {
   if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED)) width = height = 0;
 }
 
-void Window::resize(int width, int height) const { glfwSetWindowSize(window_, width, height); }
-
 void Window::events(bool wait) const {
   if (wait)
     glfwWaitEvents();

@@ -38,7 +38,6 @@ public:
   bool shouldClose() const;
   // Pixels; 0 x 0 while it is minimized.
   void size(int& width, int& height) const;
-  void resize(int width, int height) const;
   // Handles what happened; `wait`: until something did, which costs nothing.
   void events(bool wait) const;
 

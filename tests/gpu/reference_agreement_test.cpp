@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
                                          Scene{"slab", true, false, false, PELLUCID_DEPTH_DEVICE,
                                                PELLUCID_DEPTH_DISTANCE, PELLUCID_LIGHT_SPOT},
                                          Scene{"torus"}, Scene{"two_sheets"}, Scene{"ear"}, Scene{"blades"},
-                                         Scene{"hollow_sphere"}, Scene{"noise"}, kTiltedRows),
+                                         Scene{"hollow_sphere"}, kTiltedRows),
                          [](const auto& test) { return test.param.name + std::to_string(test.index); });
 
 // Every option of the thesis, on the scene where all of it shows.

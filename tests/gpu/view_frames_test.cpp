@@ -263,15 +263,9 @@ protected:
 TEST_F(ViewScreen, ShowsItsImagesInSrgb) {
   open();
   state_.display.exposure = 1.5f;
-  for (const auto& [shown, map] : {std::pair{Shown::After, ToneMap::None},
-                                   {Shown::After, ToneMap::Agx},
-                                   {Shown::After, ToneMap::Aces},
-                                   {Shown::Through, ToneMap::None},
-                                   {Shown::Difference, ToneMap::None},
-                                   {Shown::Albedo, ToneMap::None}}) {
-    state_.display.toneMap = map;
+  for (const Shown shown : {Shown::After, Shown::Through, Shown::Difference, Shown::Albedo}) {
     const Image screen = draw(shown, picture_);
-    const std::vector<std::uint8_t> expected = toSrgb(frames_->image(shown), state_.display.exposure, map);
+    const std::vector<std::uint8_t> expected = toSrgb(frames_->image(shown), state_.display.exposure);
     // The device rounds a curve that is computed in floats, of an irradiance that is stored in halves.
     constexpr float kTolerance = 1.01f;
     int lit = 0;

@@ -154,9 +154,7 @@ TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
   EXPECT_TRUE(sameBits(capture.backDepth.image, frame_.backDepth.image));
   expectLight(capture.irradiance, frame_.irradiance);
-  EXPECT_EQ(std::count(guessed.found.begin(), guessed.found.end(),
-                       "normal: N is not needed: surfaces come from front depth"),
-            1);
+  EXPECT_EQ(std::count(guessed.found.begin(), guessed.found.end(), "not used: beauty.exr N.X"), 1);
   EXPECT_FALSE(guessed.json["buffers"].contains("normal"));
   EXPECT_EQ(capture.material, frame_.material);
   ASSERT_FALSE(guessed.missing.empty());

@@ -1,18 +1,12 @@
-// The viewer without a window: camera, lights, input, settings and scripts.
+// The viewer without a window: camera, lights, input and settings.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 
-#include "common/error.h"
-#include "refusal.h"
 #include "replay/settings.h"
 #include "scene/turn.h"
-#include "temporary_directory.h"
 #include "view/input.h"
-#include "view/script.h"
 
 namespace {
 
@@ -169,69 +163,6 @@ TEST(ViewSettings, TakeEveryValueThatThePanelAllows) {
     EXPECT_EQ(s.get(settings)[0], s.high) << s.key;
     assignNearest(s, settings, Setting::Values(count, NAN));
     EXPECT_EQ(s.get(settings)[0], s.high) << s.key;
-  }
-}
-
-TEST(ViewSettings, ReachTheirFields) {
-  Changes changes;
-  ViewState state;
-  const auto set = [&](const std::string& text) {
-    EXPECT_TRUE(applyToState({1, "set", {text}, "here"}, state, changes)) << text;
-  };
-  set("gather=16");
-  set("thickness=camera");
-  set("filter=0.55,0.29,0.28");
-  set("angle=polynomial");
-  set("polynomial=1,2,3,4");
-  set("features=translucency");
-  set("reuse=coherence");
-  const ReplaySettings& s = state.settings;
-  EXPECT_EQ(s.translucency.gatherSamples, 16u);
-  EXPECT_EQ(s.translucency.cameraThickness, 1);
-  EXPECT_EQ(s.translucency.transmittanceFilter, (std::array<float, 3>{0.55f, 0.29f, 0.28f}));
-  EXPECT_EQ(s.translucency.angleModel, PELLUCID_ANGLE_POLYNOMIAL);
-  EXPECT_EQ(s.translucency.anglePolynomial, (std::array<float, 4>{1, 2, 3, 4}));
-  EXPECT_EQ(s.features, std::uint32_t{PELLUCID_FEATURE_TRANSLUCENCY});
-  EXPECT_EQ(s.reuse, PELLUCID_REUSE_COHERENCE);
-  EXPECT_TRUE(changes.frame && !changes.scene);
-}
-
-class ViewFiles : public testing::Test {
-protected:
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-  TemporaryDirectory folder_;
-};
-
-TEST_F(ViewFiles, ScriptsAreReadLineByLine) {
-  const auto file = write("s.txt", "# a comment\n\n1 move 3 4.5\n1 press left\n7 show front-depth\n");
-  const std::vector<ScriptLine> lines = readScript(file);
-  ASSERT_EQ(lines.size(), 3u);
-  EXPECT_EQ(numberOf(lines[0], 1), 4.5f);
-  EXPECT_EQ(lines[2].frame, 7);
-  ViewState state;
-  Changes changes;
-  EXPECT_FALSE(applyToState(lines[0], state, changes));
-  EXPECT_TRUE(applyToState(lines[2], state, changes));
-  EXPECT_EQ(state.display.shown, Shown::FrontDepth);
-}
-
-TEST_F(ViewFiles, ScriptsAreRefusedByLine) {
-  const auto refused = [&](const std::string& text) {
-    const auto file = write("bad.txt", text);
-    return pellucid::test::refusalOf([&] {
-      ViewState state;
-      Changes changes;
-      for (const ScriptLine& line : readScript(file)) applyToState(line, state, changes);
-    });
-  };
-  for (const char* text : {"1 jump 3", "1 move 3", "0 wheel 1", "x wheel 1", "1 press elbow", "1 set gather",
-                           "1 set gather=99", "1 set speed=1", "1 set filter=1,1,1,1,1", "1 show soul",
-                           "1 exposure much", "2 wheel 1\n1 wheel 1"}) {
-    const std::string sentence = refused(std::string("# first\n") + text);
-    EXPECT_NE(sentence.find("bad.txt:"), std::string::npos) << text << " gives: " << sentence;
   }
 }
 

@@ -13,7 +13,6 @@ layout(push_constant) uniform Push {
   vec2 extent;      // of the picture, texels
   float scale;      // pixels of the screen a texel
   int shown;        // Shown
-  int toneMap;      // ToneMap
   int channel;      // of false colors
   float exposure;
   float low, high;  // ends of the false colors
@@ -25,7 +24,6 @@ layout(push_constant) uniform Push {
 layout(location = 0) out vec4 color;
 
 #include "../../common/shaders/srgb.glsl"
-#include "tone_map.glsl"
 
 const int kAfter = 0, kBefore = 1, kThrough = 2, kDifference = 3, kTruth = 4, kDebug = 5, kFrontDepth = 6,
           kAlbedo = 7, kMaterial = 8;
@@ -85,5 +83,5 @@ void main() {
     color = vec4(falseColor(range > 0.0 ? (value[push.channel] - push.low) / range : 0.0), 1.0);
     return;
   }
-  color = vec4(srgb(toneMapped(push.toneMap, value * push.exposure)), 1.0);
+  color = vec4(srgb(value * push.exposure), 1.0);
 }
