@@ -1,4 +1,4 @@
-"""Tables of the documents from the results of `pellucid_bench --json`.
+"""Tables of the documents from the results of `pellucid_bench --json`, and of `./run shader-stats --json`.
 
     python3 bench_tables.py RESULTS.json[,RESULTS.json...] TABLE [--check FILE | --update FILE]
 
@@ -191,9 +191,24 @@ def samples_table(*runs):
     return table
 
 
+def shader_stats_table(run):
+    """All statistics of the first card, and registers and waves a SIMD of the others."""
+    (name, first), *others = run["families"].items()
+    titles = {"vgprs": "vector registers", "spilledVgprs": "spilled", "spilledSgprs": "scalar ones spilled",
+              "ldsBytes": "shared bytes", "codeBytes": "code bytes", "waves": "waves a SIMD"}
+    table = header("pipeline", *(f"{name}: {title}" for title in titles.values()),
+                   *(f"{other}: registers, waves" for other, _ in others))
+    for pipeline, row in first["pipelines"].items():
+        cells = [row[key] for key in titles]
+        for _, other in others:
+            cells.append(f"{other['pipelines'][pipeline]['vgprs']}, {other['pipelines'][pipeline]['waves']}")
+        table += f"| {pipeline} | " + " | ".join(map(str, cells)) + " |\n"
+    return table
+
+
 TABLES = {"frames": frames_table, "frame_host": frame_host_table, "context": context_table, "truth": truth_table,
           "engine": engine_table, "headline": headline_table, "samples": samples_table, "paths": paths_table,
-          "accumulation": accumulation_table}
+          "accumulation": accumulation_table, "shader_stats": shader_stats_table}
 
 
 def main(results, name, mode=None, path=None):
