@@ -1,4 +1,4 @@
-// Names of the module's rows, by which tables find them.
+// Names of the module's rows, by which tools/bench_tables.py finds them.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "generated_block.h"
 #include "pellucid/pellucid.h"
 #include "pellucid/pellucid_plan.h"
 
@@ -22,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> families;
-  std::string json, compare, table, update;
+  std::string json, compare;
 };
 
 void check(VkResult result, const char* call) {
@@ -30,16 +29,12 @@ void check(VkResult result, const char* call) {
     throw std::runtime_error(std::string(call) + " returned VkResult " + std::to_string(result));
 }
 
-// The statistics that the table has, by the names of RADV.
+// The statistics that tools/bench_tables.py takes, by the names of RADV.
 struct Column {
-  const char *key, *statistic, *title;
+  const char *key, *statistic;
 };
-constexpr Column kColumns[] = {{"vgprs", "VGPRs", "vector registers"},
-                               {"spilledVgprs", "Spilled VGPRs", "spilled"},
-                               {"spilledSgprs", "Spilled SGPRs", "scalar ones spilled"},
-                               {"ldsBytes", "LDS size", "shared bytes"},
-                               {"codeBytes", "Code size", "code bytes"},
-                               {"waves", "Subgroups per SIMD", "waves a SIMD"}};
+constexpr Column kColumns[] = {{"vgprs", "VGPRs"},        {"spilledVgprs", "Spilled VGPRs"}, {"spilledSgprs", "Spilled SGPRs"},
+                               {"ldsBytes", "LDS size"},  {"codeBytes", "Code size"},        {"waves", "Subgroups per SIMD"}};
 
 // A device that compiles and need not run anything.
 class Compiler {
@@ -177,32 +172,6 @@ Json read(const std::string& path) {
   }
 }
 
-// Waves a SIMD of each family, and all statistics of the first one.
-std::string tableOf(const Json& all) {
-  const Json& families = all.at("families");
-  const Json& first = families.begin()->at("pipelines");
-  std::string table = "| pipeline |", rule = "\n|-|";
-  for (const Column& column : kColumns) {
-    table += " " + families.begin().key() + ": " + column.title + " |";
-    rule += "-|";
-  }
-  for (auto family = std::next(families.begin()); family != families.end(); ++family) {
-    table += " " + family.key() + ": registers, waves |";
-    rule += "-|";
-  }
-  table += rule + "\n";
-  for (const auto& [pipeline, row] : first.items()) {
-    table += "| " + pipeline + " |";
-    for (const Column& column : kColumns) table += " " + row.at(column.key).dump() + " |";
-    for (auto family = std::next(families.begin()); family != families.end(); ++family) {
-      const Json& other = family->at("pipelines").at(pipeline);
-      table += " " + other.at("vgprs").dump() + ", " + other.at("waves").dump() + " |";
-    }
-    table += "\n";
-  }
-  return table;
-}
-
 // The pipelines that a wave less runs of than in `kept`, one line each.
 std::string lostWaves(const Json& now, const Json& kept) {
   std::string lost;
@@ -222,16 +191,13 @@ std::string lostWaves(const Json& now, const Json& kept) {
 }
 
 int run(const Options& options) {
-  const Json all = options.table.empty() ? measureAll(options) : read(options.table);
+  const Json all = measureAll(options);
+  if (options.compare.empty() && options.json.empty()) std::printf("%s\n", all.dump(1).c_str());
   if (!options.json.empty()) {
     std::ofstream file(options.json);
     file << all.dump(1) << "\n";
     if (!file.flush()) throw std::runtime_error(options.json + " cannot be written");
   }
-  std::string mode = "--update", path = options.update;
-  char* arguments[] = {mode.data(), path.data()};
-  if (!path.empty()) return generatedBlock(2, arguments, "shader_stats", tableOf(all));
-  std::printf("%s", tableOf(all).c_str());
   if (options.compare.empty()) return 0;
   const std::string lost = lostWaves(all, read(options.compare));
   std::fputs(lost.c_str(), stderr);
@@ -246,12 +212,9 @@ int main(int argc, char** argv) {
                "pellucid_shader_stats");
   app.add_option("--family", options.families, "cards of RADV to compile for, one or more")
       ->default_val(std::vector<std::string>{"navi21", "navi10", "vega20", "polaris10"});
-  app.add_option("--json", options.json, "file for the results");
-  auto* compare =
-      app.add_option("--compare", options.compare,
-                     "results that were kept: exit code 1 where a pipeline has fewer waves than there");
-  app.add_option("--from", options.table, "results to read in place of measuring");
-  app.add_option("--update", options.update, "document whose table is written anew")->excludes(compare);
+  app.add_option("--json", options.json, "file for the results; default: standard output, but for --compare");
+  app.add_option("--compare", options.compare,
+                 "results that were kept: exit code 1 where a pipeline has fewer waves than there");
   CLI11_PARSE(app, argc, argv);
   try {
     return run(options);

@@ -15,14 +15,13 @@
 
 #include "diffusion_error_table.h"
 #include "domains.h"
+#include "frame_fixture.h"
 #include "generated_block.h"
 #include "gltf/fields.h"
 #include "pellucid/pellucid.h"
 #include "stress/checks.h"
 
 namespace {
-
-PellucidImage placeholder() { return {reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL}; }
 
 std::string imagesTable() {
   struct Row {
@@ -58,41 +57,13 @@ std::string imagesTable() {
   return table;
 }
 
-// A valid frame of 3840 x 2160 with one light without a shadow map.
-struct Example {
-  PellucidMaterial material{};
-  PellucidLight light{};
-  PellucidFrame frame;
-
-  Example() {
-    material.gaussianCount = 1;
-    for (int c = 0; c < 3; ++c) {
-      material.transmittance[c][0] = 1;
-      material.transmittance[c][1] = 1;
-      material.reflectance[c] = material.gaussianVariance[c][0] = material.gaussianWeight[c][0] =
-          material.radius[c] = 1;
-    }
-    pellucidMakeMaterialTables(&material, nullptr, nullptr);
-    light.direction[2] = 1;
-    light.color[0] = light.intensity = 1;
-    PellucidFrame& f = frame;
-    pellucidInitFrame(&f);
-    f.imageExtent[0] = 3840;
-    f.imageExtent[1] = 2160;
-    f.clipFromView[0] = 1;
-    f.clipFromView[5] = f.clipFromView[11] = -1;
-    f.clipFromView[14] = 0.1f;
-    f.frontDepth = f.backDepth = f.irradiance = f.material = f.output = placeholder();
-    f.materialCount = 1;
-    f.materials = &material;
-    f.lights = &light;
-  }
-  Example(const Example&) = delete;
-};
-
 std::string featuresTable() {
-  Example example;
-  PellucidFrame& f = example.frame;
+  pellucid::test::Frame example(0);  // one light without a shadow map
+  PellucidFrame &f = example.frame, defaults;
+  pellucidInitFrame(&defaults);
+  f.options = defaults.options;
+  f.imageExtent[0] = 3840;
+  f.imageExtent[1] = 2160;
   struct Row {
     const char* name;
     uint32_t features, lights;
