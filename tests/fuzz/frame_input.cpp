@@ -4,18 +4,32 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <map>
 
-#include "frame_fixture.h"
+#include "stress/random_frame.h"
 
 namespace pellucid::fuzz {
 
 namespace {
 
+using harness::stress::StressFrame;
+
 constexpr uint32_t kFew = 5;
 
-// Few of each mostly; from 240 on many, up to `most`.
-uint32_t countOf(uint8_t byte, uint32_t most) {
-  return byte < 240 ? byte % (kFew + 1) : (byte - 239u) * most / 16u;
+// Making a frame takes longer than all that a target does with it.
+const StressFrame& randomFrame(uint8_t number) {
+  static const harness::stress::MaterialPool pool;
+  static std::map<uint8_t, StressFrame> made;
+  const auto found = made.find(number);
+  if (found != made.end()) return found->second;
+  return made.emplace(number, harness::stress::randomFrame(1, number, pool, {64, 64})).first->second;
+}
+
+// None more mostly, then few; from 240 on many, up to `most`. Further ones are the first.
+template <class T>
+void lengthen(std::vector<T>& array, uint8_t byte, uint32_t most) {
+  const uint32_t count = byte < 240 ? byte % (kFew + 1) : (byte - 239u) * most / 16u;
+  if (!array.empty() && array.size() < count) array.resize(count, T(array[0]));
 }
 
 const float kExtremes[] = {0.0f,
@@ -69,27 +83,24 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   std::memcpy(header, bytes.data(), std::min(bytes.size(), kHeaderBytes));
   bytes = bytes.subspan(std::min(bytes.size(), kHeaderBytes));
 
-  const test::Frame valid(1);
-  frame = valid.frame;
-  thesis_ = valid.thesis;
-  materials_.assign(countOf(header[0], 256), test::plainMaterial());
-  const uint32_t lights = countOf(header[1], 340), maps = countOf(header[2], 340);
-  maps_.assign(maps, valid.maps[0]);
-  images_.assign(countOf(header[3], 680), test::Frame::view());
-  for (uint32_t i = 0; i < maps && !images_.empty(); ++i)
-    maps_[i].image = i % static_cast<uint32_t>(images_.size());
-  for (uint32_t i = 0; i < lights; ++i) lights_.push_back(test::Frame::light(i, i < maps ? 1 : 0));
-  for (PellucidImage& image : frame.transients)
-    if (header[4] & 1) image = test::Frame::view();
-  if (header[4] & 4) frame.albedo = test::Frame::view();
-  if (header[4] & 64) frame.hiddenIrradiance = test::Frame::view();
-  if (header[4] & 8) frame.backDepth = {};
-  if (header[4] & 16) frame.options.history = test::Frame::view();
-  if (header[4] & 32) frame.options.gatherSamples = 8;
+  const StressFrame& random = randomFrame(header[0]);
+  harness::makeFrame(random.capture, random.materials, random.settings, data_);
+  frame = data_.frame;
+  lengthen(data_.materials, header[1], 256);
+  lengthen(data_.lights, header[2], 340);
+  lengthen(data_.shadowMaps, header[3], 340);
+  lengthen(data_.shadowImages, header[3], 680);
+  // Edits may ask for images that the random frame does not need.
+  const PellucidImage view{reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL};
+  if (header[4] & 1)
+    for (PellucidImage* image : {&frame.albedo, &frame.hiddenIrradiance, &frame.motion, &frame.options.history})
+      *image = view;
+  if (header[4] & 2) std::fill(std::begin(frame.transients), std::end(frame.transients), view);
+  if (header[4] & 4) frame.backDepth = {};
   choice = header[5];
 
   PellucidFrame edited = frame;
-  PellucidThesisOptions thesis = thesis_;
+  PellucidThesisOptions thesis = data_.thesis;
   for (size_t i = 0; i < edits && (i + 1) * kEditBytes <= bytes.size(); ++i) {
     const uint8_t* e = bytes.data() + i * kEditBytes;
     uint16_t word;
@@ -107,16 +118,16 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
         edit(std::span(&thesis, 1), e[1], word, value);
         break;
       case 4:
-        edit(std::span(materials_), e[1], word, value);
+        edit(std::span(data_.materials), e[1], word, value);
         break;
       case 5:
-        edit(std::span(lights_), e[1], word, value);
+        edit(std::span(data_.lights), e[1], word, value);
         break;
       case 6:
-        edit(std::span(maps_), e[1], word, value);
+        edit(std::span(data_.shadowMaps), e[1], word, value);
         break;
       default:
-        edit(std::span(images_), e[1], word, value);
+        edit(std::span(data_.shadowImages), e[1], word, value);
     }
   }
   // A struct is as long as it says, or shorter.
@@ -125,51 +136,49 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   };
   shorten(edited);
   shorten(thesis);
-  for (PellucidMaterial& material : materials_) shorten(material);
+  for (PellucidMaterial& material : data_.materials) shorten(material);
   frame = edited;
   bound(frame.options.outputFormat);
   for (PellucidImage* image :
        {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.hiddenIrradiance, &frame.albedo,
-        &frame.material, &frame.output, &frame.options.history})
+        &frame.material, &frame.motion, &frame.output, &frame.options.history})
     bound(image->layout);
   for (PellucidImage& image : frame.transients) bound(image.layout);
-  for (PellucidImage& image : images_) bound(image.layout);
+  for (PellucidImage& image : data_.shadowImages) bound(image.layout);
   // Arrays are the caller's promise: pointers are right, or NULL.
   const auto use = [&](auto& array, uint32_t& count, auto*& pointer, uint8_t isNull) {
     array.shrink_to_fit();
     count = static_cast<uint32_t>(array.size());
     pointer = header[6] & isNull ? nullptr : array.data();
   };
-  use(materials_, frame.materialCount, frame.materials, 1);
-  use(lights_, frame.lightCount, frame.lights, 2);
-  use(maps_, frame.shadowMapCount, frame.shadowMaps, 4);
-  use(images_, frame.shadowImageCount, frame.shadowImages, 8);
-  thesis_ = thesis;
-  const uint32_t side = thesis_.minimumDotTableSize;
+  use(data_.materials, frame.materialCount, frame.materials, 1);
+  use(data_.lights, frame.lightCount, frame.lights, 2);
+  use(data_.shadowMaps, frame.shadowMapCount, frame.shadowMaps, 4);
+  use(data_.shadowImages, frame.shadowImageCount, frame.shadowImages, 8);
+  const uint32_t side = thesis.minimumDotTableSize;
   uint32_t entries = 0;
-  if (thesis_.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH && side <= 360) entries = side;
-  if (thesis_.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE && side <= 16) entries = side * side;
-  table_.assign(entries, header[7] < 200 ? -0.25f : 1.0f);
-  table_.shrink_to_fit();
-  thesis_.minimumDotTable = header[6] & 16 ? nullptr : table_.data();
-  ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
-  frame.options.ambient = header[6] & 64 ? ambient_.data() : nullptr;
-  frame.options.thesis = header[6] & 32 ? nullptr : &thesis_;
+  if (thesis.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_AZIMUTH && side <= 360) entries = side;
+  if (thesis.angleModel == PELLUCID_ANGLE_MINIMUM_DOT_SPHERE && side <= 16) entries = side * side;
+  data_.minimumDotTable.assign(entries, header[7] < 200 ? -0.25f : 1.0f);
+  data_.minimumDotTable.shrink_to_fit();
+  thesis.minimumDotTable = header[6] & 16 ? nullptr : data_.minimumDotTable.data();
+  data_.thesis = thesis;
+  frame.options.thesis = header[6] & 32 ? nullptr : &data_.thesis;
+  if (header[6] & 64) data_.ambient.assign(27, header[7] < 200 ? 0.25f : -1e30f);
+  frame.options.ambient = data_.ambient.empty() ? nullptr : data_.ambient.data();
   // More light tables than there may be are refused before they are read.
-  lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
-  frame.options.lightTables = lightTables_.data();
+  data_.lightTables.resize(PELLUCID_MAX_LIGHT_TABLES);
+  frame.options.lightTables = data_.lightTables.data();
   // Tables of materials that are not valid, or shorter than the first, are another material's. Many materials
   // always have tables: a material without tables costs each recording milliseconds.
-  const bool hasTables = header[4] & 64 || materials_.size() > kFew;
-  if (hasTables) {
-    materialTables_.resize(materials_.size());
-    for (size_t i = 0; i < materials_.size(); ++i)
-      if (i > 0 && std::memcmp(&materials_[i], &materials_[i - 1], sizeof materials_[i]) == 0)
-        materialTables_[i] = materialTables_[i - 1];
-      else
-        pellucidMakeMaterialTables(&materials_[i], &materialTables_[i]);
-  }
-  frame.options.materialTables = hasTables ? materialTables_.data() : nullptr;
+  const bool hasTables = header[4] & 64 || data_.materials.size() > kFew;
+  data_.materialTables.resize(hasTables ? data_.materials.size() : 0);
+  for (size_t i = 0; i < data_.materialTables.size(); ++i)
+    if (i > 0 && std::memcmp(&data_.materials[i], &data_.materials[i - 1], sizeof(PellucidMaterial)) == 0)
+      data_.materialTables[i] = data_.materialTables[i - 1];
+    else
+      pellucidMakeMaterialTables(&data_.materials[i], &data_.materialTables[i]);
+  frame.options.materialTables = hasTables ? data_.materialTables.data() : nullptr;
 }
 
 }  // namespace pellucid::fuzz
