@@ -7,6 +7,7 @@
 
 #include "capture/shadow_images.h"
 #include "common/error.h"
+#include "common/parallel.h"
 #include "common/progress.h"
 #include "pellucid/pellucid_views.h"
 #include "replay/exposure.h"
@@ -158,6 +159,9 @@ Context::Context(Device& device, const std::function<void(PellucidContextDesc&)>
   desc.message = &appendError;
   desc.messageUser = &message_;
   if (device.writesWithoutFormat()) desc.options.outputFormat = VK_FORMAT_UNDEFINED;
+  desc.options.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+    parallelRows(static_cast<int>(count), 0, [&](int i) { job(data, static_cast<uint32_t>(i)); });
+  };
   if (change) change(desc);
   const ProgressLine progress("compiling shaders");
   const PellucidResult result = pellucidCreateContext(&desc, &context_);

@@ -105,16 +105,27 @@ PellucidResult createLayouts(PellucidContext& c, Findings& out) {
 }
 
 PellucidResult createPipelines(PellucidContext& c, Findings& out) {
-  const uint32_t uses = c.desc.options.uses;
-  for (uint32_t i = 0; i < allPasses().size(); ++i) {
-    const Pass& pass = *allPasses()[i];
-    if (uses != 0 && (pass.uses & ~uses) != 0) continue;
-    if (const VkResult result = createPipeline(c, i, &c.pipelines[i]); result != VK_SUCCESS) {
+  const PellucidContextOptions& options = c.desc.options;
+  struct Jobs {
+    PellucidContext& context;
+    std::array<VkResult, kMostPasses> results{};
+  } jobs{c};
+  const auto job = [](void* data, uint32_t i) {
+    auto& [context, results] = *static_cast<Jobs*>(data);
+    const uint32_t uses = context.desc.options.uses;
+    if (uses == 0 || (allPasses()[i]->uses & ~uses) == 0) results[i] = createPipeline(context, i, &context.pipelines[i]);
+  };
+  const auto count = static_cast<uint32_t>(allPasses().size());
+  if (options.parallelFor)
+    options.parallelFor(options.parallelUser, count, job, &jobs);
+  else
+    for (uint32_t i = 0; i < count; ++i) job(&jobs, i);
+  for (uint32_t i = 0; i < count; ++i)
+    if (jobs.results[i] != VK_SUCCESS) {
       char call[64];
-      Text(call, sizeof call) << "creating pipeline " << pass.pipeline;
-      return vulkanError(out, call, result);
+      Text(call, sizeof call) << "creating pipeline " << allPasses()[i]->pipeline;
+      return vulkanError(out, call, jobs.results[i]);
     }
-  }
   return PELLUCID_OK;
 }
 

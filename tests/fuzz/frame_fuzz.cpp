@@ -20,6 +20,7 @@ PellucidContext* makeContext(VkImageViewType shadowViewType) {
   PellucidContextDesc desc = device.desc();
   desc.options.shadowViewType = shadowViewType;
   desc.options.lightTables = 1;
+  desc.options.outputFormat = VK_FORMAT_UNDEFINED;  // frames have several
   PellucidContext* made = nullptr;
   require(pellucidCreateContext(&desc, &made) == PELLUCID_OK, "the null device has a context");
   return made;

@@ -4,18 +4,32 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <map>
 
-#include "frame_fixture.h"
+#include "stress/random_frame.h"
 
 namespace pellucid::fuzz {
 
 namespace {
 
+using harness::stress::StressFrame;
+
 constexpr uint32_t kFew = 5;
 
-// Few of each mostly; from 240 on many, up to `most`.
-uint32_t countOf(uint8_t byte, uint32_t most) {
-  return byte < 240 ? byte % (kFew + 1) : (byte - 239u) * most / 16u;
+// Making a frame takes longer than all that a target does with it.
+const StressFrame& randomFrame(uint8_t number) {
+  static const harness::stress::MaterialPool pool;
+  static std::map<uint8_t, StressFrame> made;
+  const auto found = made.find(number);
+  if (found != made.end()) return found->second;
+  return made.emplace(number, harness::stress::randomFrame(1, number, pool, {64, 64})).first->second;
+}
+
+// None more mostly, then few; from 240 on many, up to `most`. Further ones are the first.
+template <class T>
+void lengthen(std::vector<T>& array, uint8_t byte, uint32_t most) {
+  const uint32_t count = byte < 240 ? byte % (kFew + 1) : (byte - 239u) * most / 16u;
+  if (!array.empty() && array.size() < count) array.resize(count, T(array[0]));
 }
 
 const float kExtremes[] = {0.0f,
@@ -70,27 +84,24 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
   std::memcpy(header, bytes.data(), std::min(bytes.size(), kHeaderBytes));
   bytes = bytes.subspan(std::min(bytes.size(), kHeaderBytes));
 
-  const test::Frame valid(1);
-  frame = valid.frame;
-  thesis_ = valid.thesis;
-  materials_.assign(countOf(header[0], 256), valid.material);
-  const uint32_t lights = countOf(header[1], 340), maps = countOf(header[2], 340);
-  maps_.assign(maps, valid.maps[0]);
-  images_.assign(countOf(header[3], 680), test::Frame::view());
-  for (uint32_t i = 0; i < maps && !images_.empty(); ++i)
-    maps_[i].image = i % static_cast<uint32_t>(images_.size());
-  for (uint32_t i = 0; i < lights; ++i) lights_.push_back(test::Frame::light(i, i < maps ? 1 : 0));
-  for (PellucidImage& image : frame.transients)
-    if (header[4] & 1) image = test::Frame::view();
-  if (header[4] & 4) frame.albedo = test::Frame::view();
-  if (header[4] & 64) frame.hiddenIrradiance = test::Frame::view();
-  if (header[4] & 8) frame.backDepth = {};
-  if (header[4] & 16) frame.options.history = test::Frame::view();
-  if (header[4] & 32) frame.options.gatherSamples = 8;
+  const StressFrame& random = randomFrame(header[0]);
+  harness::makeFrame(random.capture, random.materials, random.settings, data_);
+  frame = data_.frame;
+  lengthen(data_.materials, header[1], 256);
+  lengthen(data_.lights, header[2], 340);
+  lengthen(data_.shadowMaps, header[3], 340);
+  lengthen(data_.shadowImages, header[3], 680);
+  // Edits may ask for images that the random frame does not need.
+  const PellucidImage view{reinterpret_cast<VkImageView>(uintptr_t{1}), VK_IMAGE_LAYOUT_GENERAL};
+  if (header[4] & 1)
+    for (PellucidImage* image : {&frame.albedo, &frame.hiddenIrradiance, &frame.motion, &frame.options.history})
+      *image = view;
+  if (header[4] & 2) std::fill(std::begin(frame.transients), std::end(frame.transients), view);
+  if (header[4] & 4) frame.backDepth = {};
   choice = header[5];
 
   PellucidFrame edited = frame;
-  PellucidThesisOptions thesis = thesis_;
+  PellucidThesisOptions thesis = data_.thesis;
   for (size_t i = 0; i < edits && (i + 1) * kEditBytes <= bytes.size(); ++i) {
     const uint8_t* e = bytes.data() + i * kEditBytes;
     uint16_t word;
@@ -108,46 +119,49 @@ FrameInput::FrameInput(std::span<const uint8_t> bytes, size_t edits) {
         edit(std::span(&thesis, 1), e[1], word, value);
         break;
       case 4:
-        edit(std::span(materials_), e[1], word, value);
+        edit(std::span(data_.materials), e[1], word, value);
         break;
       case 5:
-        edit(std::span(lights_), e[1], word, value);
+        edit(std::span(data_.lights), e[1], word, value);
         break;
       case 6:
-        edit(std::span(maps_), e[1], word, value);
+        edit(std::span(data_.shadowMaps), e[1], word, value);
         break;
       default:
-        edit(std::span(images_), e[1], word, value);
+        edit(std::span(data_.shadowImages), e[1], word, value);
     }
   }
   frame = edited;
   bound(frame.options.outputFormat);
   for (PellucidImage* image :
        {&frame.frontDepth, &frame.backDepth, &frame.irradiance, &frame.hiddenIrradiance, &frame.albedo,
-        &frame.material, &frame.output, &frame.options.history})
+        &frame.material, &frame.motion, &frame.output, &frame.options.history})
     bound(image->layout);
   for (PellucidImage& image : frame.transients) bound(image.layout);
-  for (PellucidImage& image : images_) bound(image.layout);
+  for (PellucidImage& image : data_.shadowImages) bound(image.layout);
   // Arrays are the caller's promise: pointers are right, or NULL.
   const auto use = [&](auto& array, uint32_t& count, auto*& pointer, uint8_t isNull) {
     array.shrink_to_fit();
     count = static_cast<uint32_t>(array.size());
     pointer = header[6] & isNull ? nullptr : array.data();
   };
-  use(materials_, frame.materialCount, frame.materials, 1);
-  use(lights_, frame.lightCount, frame.lights, 2);
-  use(maps_, frame.shadowMapCount, frame.shadowMaps, 4);
-  use(images_, frame.shadowImageCount, frame.shadowImages, 8);
-  thesis_ = thesis;
-  ambient_.assign(27, header[7] < 200 ? 0.25f : -1e30f);
-  frame.options.ambient = header[6] & 64 ? ambient_.data() : nullptr;
-  frame.options.thesis = header[6] & 32 ? nullptr : &thesis_;
+  use(data_.materials, frame.materialCount, frame.materials, 1);
+  use(data_.lights, frame.lightCount, frame.lights, 2);
+  use(data_.shadowMaps, frame.shadowMapCount, frame.shadowMaps, 4);
+  use(data_.shadowImages, frame.shadowImageCount, frame.shadowImages, 8);
+  data_.thesis = thesis;
+  frame.options.thesis = header[6] & 32 ? nullptr : &data_.thesis;
+  if (header[6] & 64) data_.ambient.assign(27, header[7] < 200 ? 0.25f : -1e30f);
+  frame.options.ambient = data_.ambient.empty() ? nullptr : data_.ambient.data();
   // More light tables than there may be are refused before they are read.
-  lightTables_.resize(PELLUCID_MAX_LIGHT_TABLES);
-  frame.options.lightTables = lightTables_.data();
-  // Else the edits are refused at once, as the tables are of other fields.
-  if (header[4] & 64)
-    for (PellucidMaterial& material : materials_) pellucidMakeMaterialTables(&material, nullptr, nullptr);
+  data_.lightTables.resize(PELLUCID_MAX_LIGHT_TABLES);
+  frame.options.lightTables = data_.lightTables.data();
+  // Else edits of materials are refused at once, as the tables are of other fields. Tables take milliseconds.
+  for (size_t i = 0; header[4] & 64 && i < data_.materials.size(); ++i)
+    if (i > 0 && std::memcmp(&data_.materials[i], &data_.materials[i - 1], offsetof(PellucidMaterial, tables)) == 0)
+      data_.materials[i] = data_.materials[i - 1];
+    else
+      pellucidMakeMaterialTables(&data_.materials[i], nullptr, nullptr);
 }
 
 }  // namespace pellucid::fuzz

@@ -53,8 +53,8 @@ TEST_P(Seeds, AreAcceptedOrRefusedWithASentence) {
     bool isAccepted = false;
     EXPECT_NO_THROW(isAccepted =
                         GetParam().run({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}));
-    // A sound input takes some milliseconds.
-    EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
+    // A sound input takes some milliseconds, but the first one compiles the materials of random frames.
+    EXPECT_LT(std::clock() - start, (count == 0 ? 60 : 5) * CLOCKS_PER_SEC);
     EXPECT_TRUE(isAccepted || count > 0) << "the first is sound";
     ++count;
     accepted += isAccepted;

@@ -36,8 +36,13 @@ TEST_F(ContextTest, RefusesOtherFormatsThanItsOwn) {
   EXPECT_NE(said.find("outputFormat is VkFormat 37"), std::string::npos) << said;
 }
 
-TEST_F(ContextTest, RefusesFramesOfOtherUsesThanItsOwn) {
-  const Context diffusion(device(), [](PellucidContextDesc& desc) { desc.options.uses = PELLUCID_USE_DIFFUSION; });
+TEST_F(ContextTest, MakesThePipelinesOfItsUsesOnLentThreads) {
+  const Context diffusion(device(), [](PellucidContextDesc& desc) {
+    desc.options.uses = PELLUCID_USE_DIFFUSION;
+    desc.options.parallelFor = [](void*, uint32_t count, void (*job)(void*, uint32_t), void* data) {
+      for (uint32_t i = count; i-- > 0;) job(data, i);
+    };
+  });
   ReplaySettings s;
   s.features = PELLUCID_FEATURE_DIFFUSION;
   EXPECT_TRUE(sameBits(record(FrameRun(device(), diffusion, litSlab(), {testMaterial()}, s)),

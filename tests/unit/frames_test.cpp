@@ -75,13 +75,5 @@ TEST(WholeFile, AppearsWhenItIsWhole) {
   EXPECT_EQ(std::distance(begin(files), end(files)), 1) << "a temporary file stays behind";
 }
 
-TEST(WholeFile, ReplacesNoDeviceAndNoFolder) {
-  const TemporaryDirectory folder;
-  const auto write = [](const std::filesystem::path& file) { writeText(file, "never"); };
-  EXPECT_THROW(writeWhole("/dev/null", write), InputError);
-  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-  EXPECT_THROW(writeWhole(folder / ".", write), InputError);
-}
-
 }  // namespace
 }  // namespace pellucid::harness

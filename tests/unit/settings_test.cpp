@@ -34,17 +34,4 @@ TEST(Settings, PolynomialsAreThoseOfTheThesis) {
   EXPECT_GT(value("quadratic", 2.16), 0);
 }
 
-TEST(Settings, DebugViewsAreTheirNames) {
-  const std::pair<const char*, PellucidDebugView> views[] = {{"thickness", PELLUCID_DEBUG_THICKNESS},
-                                                             {"transmittance", PELLUCID_DEBUG_TRANSMITTANCE},
-                                                             {"occlusion", PELLUCID_DEBUG_OCCLUSION},
-                                                             {"irradiance", PELLUCID_DEBUG_IRRADIANCE}};
-  for (const auto& [name, view] : views) {
-    SettingsOptions options;
-    options.debug = name;
-    EXPECT_EQ(options.parse().debugView, view) << name;
-    EXPECT_EQ(debugOption(options.parse()), name);
-  }
-}
-
 }  // namespace

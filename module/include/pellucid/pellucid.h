@@ -67,8 +67,7 @@ typedef struct PellucidContextDesc {
 /* Writes the defaults. */
 PELLUCID_API void pellucidInitContextDesc(PellucidContextDesc* desc);
 
-/* Checks the device's limits and makes the pipelines of options.uses, on the calling thread. Any thread may use the context. On failure
- * *context is NULL.
+/* Checks the device's limits and makes the pipelines of options.uses. Any thread may use the context. On failure *context is NULL.
  * Errors: VERSION, INVALID_ARGUMENT, MISSING_FEATURE, OUT_OF_MEMORY, VULKAN. */
 PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* desc, PellucidContext** context);
 

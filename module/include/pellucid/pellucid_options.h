@@ -34,6 +34,9 @@ typedef enum PellucidUse {
   PELLUCID_USE_THESIS = 1 << 7
 } PellucidUse;
 
+/* Calls job(data, i) for each i below count, on any threads and in any order. Returns after the last job. */
+typedef void (*PellucidParallelForFn)(void* user, uint32_t count, void (*job)(void* data, uint32_t index), void* data);
+
 /* Options of a context. */
 typedef struct PellucidContextOptions {
   /* PellucidUse bits; 0 (default): all. */
@@ -53,6 +56,10 @@ typedef struct PellucidContextOptions {
   VkPipelineCache pipelineCache;
   /* Optional; allocates the host memory of Vulkan objects. */
   const VkAllocationCallbacks* allocator;
+  /* Optional; makes the pipelines on several threads, which use allocator and pipelineCache. NULL (default): the calling thread. */
+  PellucidParallelForFn parallelFor;
+  /* First argument of parallelFor. */
+  void* parallelUser;
 } PellucidContextOptions;
 
 /* ---- Frame --------------------------------------------------------------------------------------- */
