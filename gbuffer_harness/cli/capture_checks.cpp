@@ -10,7 +10,6 @@
 
 #include "capture/material.h"
 #include "common/error.h"
-#include "metrics/masked_image.h"
 #include "reference/camera.h"
 
 namespace pellucid::harness {
