@@ -73,14 +73,6 @@ TEST_F(Cli, SettingsOfAFile) {
   }
 }
 
-TEST_F(Cli, UsageErrors) {
-  expect(2, "", "subcommand");
-  expect(2, "replay", "capture");
-  expect(2, "replay x.exr --set colour=red", "unknown key \"colour\"");
-  expect(2, "replay x.exr --debug soul", "\"soul\" is not one of");
-  expect(2, "replay x.exr --mode magic", "\"magic\" is not one of");
-}
-
 TEST_F(Cli, BadInput) {
   expect(3, "replay " + path("missing.json"), "missing.json");
   std::ofstream(path("broken.json")) << "{ \"pellucid\": 1, ";
@@ -163,12 +155,6 @@ TEST_F(Cli, SequenceWithHistory) {
 TEST_F(Cli, SequenceUsage) {
   expect(2, "replay in.####.exr", "a sequence: -o with #### is required");
   expect(3, "replay in.####.exr -o o.####.exr", "in.####.exr: no file has such a name");
-  expect(2, "replay in.#.exr -o o.exr --frames 1-2", "\"o.exr\" is not a file name with one run of #");
-  expect(2, "replay in.#.exr -o o.#.exr --frames 2-1", "\"2-1\" ends before it begins");
-  expect(2, "replay in.#.exr -o o.#.exr --frames 1-2 --repeat 2",
-         "--repeat times one capture, not a sequence");
-  expect(2, "capture --procedural ear --turntable 3 -o x.exr", "one run of #");
-  expect(2, "capture --procedural ear --point-maps 6 -o x.exr", "--point-maps: needs a model");
   expect(3, "capture --procedural ear --material *=granite -o x.exr", "granite");
   for (const char* command : {"capture --procedural ear", "replay x.exr"})
     expect(2, std::string(command) + " -o x.png", "\"x.png\" is written as EXR");

@@ -1,5 +1,6 @@
 // Frames as engines have them: encodings of materials, formats of irradiance, outputs that are
 // added to, and pre-exposed irradiance.
+// No other test finds a sum that is clamped before its last part, or packed floats that are read after they are written.
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>

@@ -65,15 +65,4 @@ TEST_F(Cli, FlickerOfPixelsByThemselves) {
   EXPECT_FALSE(changes[0].contains("spots") || changes[3].contains("spots"));
 }
 
-TEST_F(Cli, FlickerUsage) {
-  const std::string plane = "flicker --procedural plane --size 16x16 ";
-  expect(2, "flicker", "either a model or --procedural is required");
-  expect(2, "flicker x.exr --size 16x16", "--size: needs a model or --procedural");
-  expect(2, plane + "--pixels 1,0", "\"0\" is not a number of pixels");
-  expect(2, plane + "--pixels 1,x", "\"x\" is not a number");
-  expect(2, plane + "--limit max=1", "must be one of rel_rmse=, p999=, worst=, spots=");
-  expect(2, plane + "--path pan", "--path: needs a model");
-  expect(3, "flicker " + path("missing.exr"), "missing.exr");
-}
-
 }  // namespace

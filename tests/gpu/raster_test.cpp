@@ -1,4 +1,5 @@
-
+// The rasterizer against geometry: depths, thickness, light and shadows.
+// No other test finds holes that count as thickness, or exit depths and caster materials of another surface.
 #include <cmath>
 
 #include "capture/material.h"

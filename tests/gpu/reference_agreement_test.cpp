@@ -1,4 +1,5 @@
 // The GPU passes against the float64 reference, which shares no code with them.
+// No other test finds an option of the thesis, or a kind of light, whose formula errs in the shaders alone.
 #include "gpu_fixture.h"
 
 #include <functional>

@@ -7,24 +7,17 @@
 #include <string>
 
 #include "material_monte_carlo.h"
-#include "pellucid/pellucid_material.h"
 #include "quadrature.h"
 #include "transport.h"
+#include "unit/material_complaint.h"
 
 namespace {
 
 using namespace pellucid::material;
+using pellucid::test::Complaint;
+using pellucid::test::note;
 
 constexpr double kHalfSpace = std::numeric_limits<double>::infinity();
-
-struct Complaint {
-  std::string field, sentence;
-};
-
-void note(void* user, PellucidSeverity severity, const char* field, const char* sentence) {
-  EXPECT_EQ(severity, PELLUCID_SEVERITY_ERROR);
-  *static_cast<Complaint*>(user) = {field, sentence};
-}
 
 PellucidOpenPbr openPbr(double color, double g, double ior) {
   PellucidOpenPbr material;

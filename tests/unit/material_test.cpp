@@ -9,18 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/pellucid_material.h"
+#include "unit/material_complaint.h"
 
 namespace {
 
-struct Complaint {
-  std::string field, sentence;
-};
-
-void note(void* user, PellucidSeverity severity, const char* field, const char* sentence) {
-  EXPECT_EQ(severity, PELLUCID_SEVERITY_ERROR);
-  *static_cast<Complaint*>(user) = {field, sentence};
-}
+using pellucid::test::Complaint;
+using pellucid::test::note;
 
 struct Compiled {
   PellucidMaterial material = {};
