@@ -1,4 +1,4 @@
-// The diffusion pyramid's filters, read by GLSL and C++. `./run fit` fits module/material/pyramid_energy_table.h to them after a
+// The diffusion pyramid's filters, read by GLSL and C++. `./run fit` fits module/src/material/pyramid_energy_table.h to them after a
 // change; docs/how-it-works.md, "Fitted tables". Weights are along one axis.
 #ifndef PELLUCID_FILTERS_H
 #define PELLUCID_FILTERS_H

@@ -28,7 +28,7 @@ TEST(GatherBody, BallsReturnWhatWalksDo) {
     double scattering[3], absorption[3], ior;
     double radius, limit[3];  // mm; relative, noise included
   };
-  // With an index of refraction the fit of `excess` (module/material/gather.cpp) leaves 4 %.
+  // With an index of refraction the fit of `excess` (module/src/material/gather.cpp) leaves 4 %.
   const Case cases[] = {{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 4, {0.02, 0.03, 0.02}},
                         {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 24, {0.02, 0.02, 0.03}},
                         {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 4, {0.02, 0.04, 0.04}},
