@@ -8,7 +8,7 @@
 #include "describe.h"
 #include "fit.h"
 #include "guarded.h"
-#include "pellucid/pellucid_material.h"
+#include "pellucid/pellucid.h"
 #include "presets.h"
 #include "profile.h"
 #include "material/transmittance.h"

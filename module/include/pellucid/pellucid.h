@@ -74,6 +74,12 @@ PELLUCID_API PellucidResult pellucidCreateContext(const PellucidContextDesc* des
 /* Destroys a context. The device must have finished all commands that the context recorded. NULL is allowed. */
 PELLUCID_API void pellucidDestroyContext(PellucidContext* context);
 
+/* ---- Materials: pellucid_material.h compiles them -------------------------------------------------- */
+
+/* Makes the tables of a material whose fields the caller filled or changed: what shaders read of its profile and its T(d). The
+ * call takes about 2 ms. `message` (optional) names field and value. On failure the tables do not change. Errors: INVALID_ARGUMENT. */
+PELLUCID_API PellucidResult pellucidMakeMaterialTables(PellucidMaterial* material, PellucidMessageFn message, void* messageUser);
+
 /* ---- Lights and shadow maps --------------------------------------------------------------------- */
 
 /* Types of lights, with the names and units of KHR_lights_punctual. */

@@ -45,7 +45,7 @@ typedef enum PellucidTransmittanceModel {
 } PellucidTransmittanceModel;
 
 /* The constants of a material: plain data, which a file may keep. pellucidCompileMaterial makes them from a description. Or the caller
- * fills the fields and calls pellucidMakeMaterialTables. Lengths are at most 1e9 mm. */
+ * fills the fields and calls pellucidMakeMaterialTables of pellucid.h. Lengths are at most 1e9 mm. */
 typedef struct PellucidMaterial {
   /* PellucidTransmittanceModel. */
   uint32_t transmittanceModel;
@@ -73,11 +73,6 @@ typedef struct PellucidMaterial {
    * PELLUCID_HEADER_VERSION. */
   uint32_t tables[PELLUCID_MATERIAL_TABLE_WORDS];
 } PellucidMaterial;
-
-/* Makes the tables of a material whose fields the caller filled or changed: what shaders read of its profile and its T(d). The target
- * pellucid has this function. The call takes about 2 ms. `message` (optional) names field and value. On failure the tables do not change.
- * Errors: INVALID_ARGUMENT. */
-PELLUCID_API PellucidResult pellucidMakeMaterialTables(PellucidMaterial* material, PellucidMessageFn message, void* messageUser);
 
 /* ---- Compiler ---------------------------------------------------------------------------------- */
 
