@@ -59,7 +59,7 @@ Json dispatchJson(const PellucidPlan& plan, std::uint32_t index) {
 std::string planJson(const PellucidPlan& plan, int indent) {
   Json json = {{"dispatchCount", plan.dispatchCount}, {"barrierCount", plan.barrierCount},
                {"activeLights", plan.activeLights},   {"gatherSamples", plan.gatherSamples},
-               {"constantsSize", plan.constantsSize}, {"listsOffset", plan.listsOffset},
+               {"constantsSize", plan.constantsSize}, {"listsOffset", plan.listsOffset}, {"inPlaceDispatches", plan.inPlaceDispatches},
                {"dispatches", Json::array()},         {"skips", Json::array()}};
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i) json["dispatches"].push_back(dispatchJson(plan, i));
   for (const PellucidSkip& s : std::span(plan.skips, plan.skipCount))

@@ -134,7 +134,6 @@ void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> ima
 }
 
 Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const {
-  constexpr uint32_t kLists = 1u << PELLUCID_RESOURCE_CONSTANTS;
   Access access;
   if (d.indirect) access.reads = kLists;
   forEach(pass.bindings() & ~unused, [&](const Binding& b) {
@@ -147,6 +146,12 @@ Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, B
     (has(pass.writes, b.number) ? access.writes : access.reads) |= bits;
   });
   return access;
+}
+
+// True for a dispatch that samples and stores one image. Stand-ins count: an API with one state an image refuses them, too.
+bool Planner::isInPlace(const PellucidDispatch& d) const {
+  const Access access = accessOf(*allPasses()[d.pipeline], d, 0);
+  return (access.reads & access.writes & ~kLists) != 0;
 }
 
 bool Planner::finish() {
@@ -177,6 +182,7 @@ bool Planner::finish() {
     // One barrier makes commands visible to all dispatches that follow; more would cost 2 us each.
     d.barrierIndirect = d.barrierBefore && facts.stages.lists && wave[i] == commands;
     plan_.barrierCount += d.barrierBefore;
+    plan_.inPlaceDispatches += isInPlace(d);
   }
   return true;
 }

@@ -339,6 +339,7 @@ void expectRules(const Frame& f) {
     EXPECT_TRUE(next == plan.dispatchCount || plan.dispatches[next].barrierBefore) << "transient " << i;
   }
   std::set<uint32_t> everWritten, used, written;  // in the plan, and in the wave so far
+  uint32_t inPlace = 0;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     SCOPED_TRACE(d.name);
@@ -346,7 +347,7 @@ void expectRules(const Frame& f) {
     for (const uint32_t groups : d.groups) EXPECT_LE(groups, 65535u);
     if (d.barrierBefore) used = written = {};
     std::multiset<uint32_t> uses;
-    std::set<uint32_t> writes, numbers;
+    std::set<uint32_t> writes, numbers, sampled, stored;
     const std::vector<PellucidBinding> bound = bindingsOf(plan, d), all = bindingsOf(d.pipeline);
     ASSERT_EQ(bound.size(), all.size());
     if (d.indirect) {
@@ -355,6 +356,10 @@ void expectRules(const Frame& f) {
     }
     for (const PellucidBinding& b : bound) {
       EXPECT_TRUE(numbers.insert(b.binding).second) << "a binding holds one image";
+      const bool oneImage = b.resource == PELLUCID_RESOURCE_OUTPUT && f.frame.output.view == f.frame.irradiance.view;
+      const uint32_t image = oneImage ? static_cast<uint32_t>(PELLUCID_RESOURCE_IRRADIANCE) : b.resource;
+      if (b.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) sampled.insert(image);
+      if (b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) stored.insert(image);
       const PellucidBinding& ofPipeline = all[static_cast<size_t>(&b - bound.data())];
       EXPECT_EQ(b.binding, ofPipeline.binding);
       EXPECT_EQ(b.type, ofPipeline.type);
@@ -385,6 +390,7 @@ void expectRules(const Frame& f) {
       const bool noEntries = b.binding == PELLUCID_BINDING_ENTRY_POINTS && f.frame.shadowMapCount == 0;
       EXPECT_TRUE(write || noEntries || everWritten.count(b.resource)) << "transient " << transient;
     }
+    inPlace += std::any_of(stored.begin(), stored.end(), [&](uint32_t image) { return sampled.count(image) > 0; });
     for (const uint32_t resource : uses)
       EXPECT_EQ(written.count(resource), 0u) << pellucidResourceName(resource) << " was just written";
     for (const uint32_t resource : writes) {
@@ -400,6 +406,7 @@ void expectRules(const Frame& f) {
     written.insert(writes.begin(), writes.end());
     everWritten.insert(writes.begin(), writes.end());
   }
+  EXPECT_EQ(plan.inPlaceDispatches, inPlace);
 }
 
 TEST(Plan, EveryPlanKeepsTheRules) {
@@ -429,6 +436,50 @@ TEST(Plan, EveryPlanKeepsTheRules) {
     beside.frame.options.gatherSamples = samples;
     expectRules(beside);
   }
+}
+
+// APIs with one state an image ask before they record.
+TEST(Plan, DispatchesInPlaceAreCounted) {
+  struct Row {
+    const char* name;
+    void (*change)(Frame&);
+    uint32_t twoImages, oneImage;  // output and irradiance
+  };
+  constexpr uint32_t kThrough = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Row rows[] = {
+      {"gathered", [](Frame& f) { f.frame.options.gatherSamples = 8; }, 0, 0},
+      {"one thickness a pixel", [](Frame&) {}, 0, 0},
+      {"added to the output", [](Frame& f) { f.frame.options.addToOutput = 1; }, 1, 0},
+      {"not diffused", [](Frame& f) { f.frame.options.features = kThrough; }, 0, 1},
+      {"diffusion alone", [](Frame& f) { f.frame.options.features = PELLUCID_FEATURE_DIFFUSION; }, 0, 0},
+      {"a debug view", [](Frame& f) { f.frame.options.debugView = PELLUCID_DEBUG_THICKNESS; }, 0, 1},
+      {"kept light", [](Frame& f) { f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE; }, 0, 0},
+      {"kept light, not diffused",
+       [](Frame& f) {
+         f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.options.features = kThrough;
+       },
+       0, 1},
+      {"kept probes",
+       [](Frame& f) {
+         f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.options.gatherSamples = 8;
+       },
+       0, 0}};
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.name);
+    Frame f(4);
+    row.change(f);
+    f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
+    EXPECT_EQ(f.plan().inPlaceDispatches, row.twoImages);
+    f.frame.output = f.frame.irradiance;
+    if (f.frame.options.addToOutput == 0) {
+      EXPECT_EQ(f.plan().inPlaceDispatches, row.oneImage) << "the output is the irradiance";
+    }
+  }
+  Frame many(20);  // three dispatches
+  many.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+  EXPECT_EQ(many.plan().inPlaceDispatches, 2u);
 }
 
 TEST(Plan, LargeImagesKeepTheirLists) {

@@ -188,7 +188,8 @@ typedef struct PellucidFrame {
   PellucidImage motion;
   /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
    * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. Two views count as two images
-   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. */
+   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. In
+   * place, the last dispatch may sample and store the image (plan.inPlaceDispatches). */
   PellucidImage output;
   /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];

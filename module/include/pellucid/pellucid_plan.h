@@ -117,6 +117,12 @@ struct PellucidPlan {
   /* Age of options.history in frames. ALTERNATE, COHERENCE: frames since a frame computed the light that comes through; 0: this frame
    * computes it. ACCUMULATE: frames since accumulation began. */
   uint32_t historyAge;
+  /* Number of dispatches that sample and store one image, for which Vulkan's layout GENERAL serves. APIs with one state an image cannot run
+   * them. Output and irradiance count as one image unless they have two views. 0 without each of the following:
+   * - options.addToOutput 1;
+   * - an output that is the irradiance, in plans that do not diffuse, and in debug views;
+   * - options.reuse ALTERNATE or COHERENCE of light that one dispatch cannot bind, without a gather. */
+  uint32_t inPlaceDispatches;
   /* Private; pellucidGetBindings reads the images. */
   uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES];
   /* Private: data by which the next plan decides about reuse, and the requirements of recording. */
