@@ -167,6 +167,13 @@ inline std::vector<PellucidBinding> bindingsOf(const PellucidPlan& plan, const P
   return all;
 }
 
+// What a pipeline binds.
+inline std::vector<PellucidBinding> bindingsOf(uint32_t pipeline) {
+  std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
+  all.resize(pellucidGetPipelineBindings(pipeline, all.data()));
+  return all;
+}
+
 // Names of the plan's dispatches, in their order.
 inline std::vector<std::string> names(const PellucidPlan& plan) {
   std::vector<std::string> result;

@@ -31,6 +31,7 @@ Json bindingJson(const PellucidBinding& b) {
   Json json = {{"binding", b.binding},
                {"name", pellucidBindingName(b.binding)},
                {"type", descriptorName(b.type)},
+               {"writes", b.writes != 0},
                {"resource", resourceName(b.resource)}};
   if (b.size > 0) json.update({{"offset", b.offset}, {"size", b.size}});
   return json;
@@ -58,8 +59,8 @@ Json dispatchJson(const PellucidPlan& plan, std::uint32_t index) {
 std::string planJson(const PellucidPlan& plan, int indent) {
   Json json = {{"dispatchCount", plan.dispatchCount}, {"barrierCount", plan.barrierCount},
                {"activeLights", plan.activeLights},   {"gatherSamples", plan.gatherSamples},
-               {"constantsSize", plan.constantsSize}, {"dispatches", Json::array()},
-               {"skips", Json::array()}};
+               {"constantsSize", plan.constantsSize}, {"listsOffset", plan.listsOffset}, {"inPlaceDispatches", plan.inPlaceDispatches},
+               {"dispatches", Json::array()},         {"skips", Json::array()}};
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i) json["dispatches"].push_back(dispatchJson(plan, i));
   for (const PellucidSkip& s : std::span(plan.skips, plan.skipCount))
     json["skips"].push_back({{"what", s.what}, {"reason", s.reason}, {"count", s.count}});

@@ -33,6 +33,7 @@ ConstantsLayout::ConstantsLayout(const Setup& setup, const Lights& all, const St
     place(&gatherMaps, last.gatherMapBytes + kGatherMapWindow);
     place(&entryMaps, last.entryMapBytes + kEntryMapWindow);
   }
+  lists = size;
   if (stages.diffusion)
     place(&lists, sizeof(shared::BlockLists) + blocks.listWords() * sizeof(uint32_t));
 }

@@ -40,6 +40,7 @@ inline constexpr std::array<Binding, PELLUCID_BINDING_COUNT> kBindings = [] {
   return all;
 }();
 
+static_assert(PELLUCID_MAX_BINDING_NUMBER == PELLUCID_BINDING_COUNT - 1);
 static_assert(std::all_of(kBindings.begin(), kBindings.end(),
                           [](const Binding& b) { return b.name != nullptr; }));
 
@@ -78,6 +79,15 @@ struct Pass {
     return shadowViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY && !wordsOfArrays.empty() ? wordsOfArrays : words;
   }
 };
+
+// As pellucidGetPipelineBindings has it.
+inline PellucidBinding bindingOf(const Pass& pass, const Binding& b) {
+  PellucidBinding result{};
+  result.binding = b.number;
+  result.type = b.type;
+  result.writes = has(pass.writes, b.number);
+  return result;
+}
 
 // Place among the packed bindings of a pass (plan.h) of one that it has and that is no shadow image.
 constexpr uint32_t slotOf(const Pass& pass, uint32_t binding) {

@@ -64,11 +64,13 @@ void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup&
                uint32_t source, uint32_t destination) {
   const bool starts = destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0;
   const uint32_t write = destination == PELLUCID_RESOURCE_OUTPUT ? PELLUCID_WRITE_LAST : starts ? PELLUCID_WRITE_STARTS : 0;
-  p.add(pass, name)
-      .tiles(PELLUCID_GROUP_X)
+  Step step = p.add(pass, name);
+  step.tiles(PELLUCID_GROUP_X)
       .lights(group)
       .colors(source, destination)
       .push(shared::TranslucencyPass{through, group.lightCount, write});
+  // No pixel reads the source of these lights, and the history is stored.
+  if (starts) step.standIn(PELLUCID_BINDING_SOURCE, PELLUCID_RESOURCE_IRRADIANCE);
 }
 
 // The lights of a group with one thickness a pixel, and debug views.

@@ -154,6 +154,14 @@ using namespace pellucid;
 
 extern "C" uint32_t pellucidGetPipelineCount(void) { return static_cast<uint32_t>(allPasses().size()); }
 
+extern "C" uint32_t pellucidGetPipelineBindings(uint32_t pipeline, PellucidBinding* bindings) {
+  if (pipeline >= allPasses().size() || !bindings) return 0;
+  const Pass& pass = *allPasses()[pipeline];
+  uint32_t count = 0;
+  forEach(pass.bindings(), [&](const Binding& b) { bindings[count++] = bindingOf(pass, b); });
+  return count;
+}
+
 extern "C" const char* pellucidPipelineName(uint32_t pipeline) {
   return pipeline < allPasses().size() ? allPasses()[pipeline]->pipeline : "unknown pipeline";
 }
@@ -175,7 +183,7 @@ extern "C" PellucidResult pellucidGetShader(uint32_t pipeline, VkImageViewType s
     std::copy(own.begin(), own.end(), words);
     fixOutputFormat(words, own.size(), wide);
   }
-  *shader = {any ? own.data() : words, own.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data()};
+  *shader = {any ? own.data() : words, own.size(), static_cast<uint32_t>(pass.constants.size()), pass.constants.data(), pass.uses};
   return PELLUCID_OK;
 }
 

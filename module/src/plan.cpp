@@ -79,6 +79,7 @@ uint32_t layeredMap(const PellucidFrame& frame) {
 PellucidResult buildPlan(const FrameFacts& f, const History& kept, PellucidPlan* plan) {
   plan->activeLights = f.lights.lightCount;
   plan->constantsSize = f.constants.size;
+  plan->listsOffset = f.constants.lists;
   plan->gatherSamples = f.gatherSamples;
   Skips skips = skipsOf(f);
   PlanState state;

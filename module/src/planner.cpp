@@ -134,7 +134,6 @@ void Planner::addShadowImages(PellucidDispatch& d, std::span<const uint32_t> ima
 }
 
 Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const {
-  constexpr uint32_t kLists = 1u << PELLUCID_RESOURCE_CONSTANTS;
   Access access;
   if (d.indirect) access.reads = kLists;
   forEach(pass.bindings() & ~unused, [&](const Binding& b) {
@@ -147,6 +146,12 @@ Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, B
     (has(pass.writes, b.number) ? access.writes : access.reads) |= bits;
   });
   return access;
+}
+
+// True for a dispatch that samples and stores one image. Stand-ins count: an API with one state an image refuses them, too.
+bool Planner::isInPlace(const PellucidDispatch& d) const {
+  const Access access = accessOf(*allPasses()[d.pipeline], d, 0);
+  return (access.reads & access.writes & ~kLists) != 0;
 }
 
 bool Planner::finish() {
@@ -177,6 +182,7 @@ bool Planner::finish() {
     // One barrier makes commands visible to all dispatches that follow; more would cost 2 us each.
     d.barrierIndirect = d.barrierBefore && facts.stages.lists && wave[i] == commands;
     plan_.barrierCount += d.barrierBefore;
+    plan_.inPlaceDispatches += isInPlace(d);
   }
   return true;
 }
@@ -185,25 +191,26 @@ bool Planner::finish() {
 
 namespace {
 
-// Bytes that passes see of the constants from a binding's offset on.
+// Bytes that passes see of the constants from a binding's offset on. Those of uniforms are whole steps of 256, which some devices and RHIs
+// ask for: ConstantsLayout has room.
 VkDeviceSize windowOf(const PellucidPlan& plan, const PlanState& state, uint32_t binding,
                       VkDeviceSize offset) {
   switch (binding) {
     case PELLUCID_BINDING_FRAME:
-      return sizeof(shared::FrameConstants);
+      return aligned(sizeof(shared::FrameConstants));
     case PELLUCID_BINDING_LIGHTS:
-      return kLightWindow;
+      return aligned(kLightWindow);
     case PELLUCID_BINDING_SHADOWS:
-      return kShadowWindow;
+      return aligned(kShadowWindow);
     case PELLUCID_BINDING_GATHER_MAPS:
-      return kGatherMapWindow;
+      return aligned(kGatherMapWindow);
     case PELLUCID_BINDING_ENTRY_MAPS:
       return kEntryMapWindow;
     case PELLUCID_BINDING_MATERIALS:
       return state.materials * sizeof(shared::MaterialConstants);
     case PELLUCID_BINDING_KERNELS:
       return state.materials * sizeof(shared::KernelConstants);
-    default:  // lists, which are the last of the slice
+    default:  // lists
       return plan.constantsSize - offset;
   }
 }
@@ -219,7 +226,7 @@ BoundList boundBy(const PellucidPlan& plan, const PellucidDispatch& d) {
   uint32_t slot = 0;
   forEach(allPasses()[d.pipeline]->bindings(), [&](const Binding& b) {
     PellucidBinding& to = bound.list[bound.count++];
-    to = {b.number, b.type, PELLUCID_RESOURCE_FRONT_DEPTH, 0, 0};
+    to = bindingOf(*allPasses()[d.pipeline], b);
     if (b.number >= PELLUCID_BINDING_SHADOW_IMAGES) {
       // Slots that are not read hold a view of the type that shadow images have, as far as the frame has one.
       const uint32_t image = b.number - PELLUCID_BINDING_SHADOW_IMAGES;

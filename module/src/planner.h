@@ -86,8 +86,9 @@ public:
 
 private:
   friend class Step;
-  // Bits 1 << PellucidResource of all that a dispatch uses, without shadow images, which none writes.
   // CONSTANTS: the lists, which alone of all constants are written.
+  static constexpr uint32_t kLists = 1u << PELLUCID_RESOURCE_CONSTANTS;
+  // Bits 1 << PellucidResource of all that a dispatch uses, without shadow images, which none writes.
   struct Access {
     uint32_t reads = 0, writes = 0;
     bool conflicts(const Access& other) const {
@@ -96,6 +97,7 @@ private:
   };
   void addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images);
   Access accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const;
+  bool isInPlace(const PellucidDispatch& d) const;
   uint32_t inputOf(uint32_t binding) const;
 
   PellucidPlan& plan_;

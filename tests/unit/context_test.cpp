@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <new>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -158,7 +161,11 @@ TEST(ContextLimits, AreNamedWithBothNumbers) {
               {"maxPerStageDescriptorStorageImages", &Limits::maxPerStageDescriptorStorageImages, 3},
               {"maxPerStageDescriptorSampledImages", &Limits::maxPerStageDescriptorSampledImages, 15},
               {"maxPerStageResources", &Limits::maxPerStageResources, 21}};
+  std::ifstream file(PELLUCID_SOURCE_DIR "/docs/integration.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
   for (const auto& [name, limit, needed] : rows) {
+    EXPECT_NE(page.find("| `" + std::string(name) + "` | " + std::to_string(needed) + " |"), std::string::npos)
+        << "docs/integration.md does not say that " << name << " is " << needed;
     NullDevice enough, less;
     enough.limits.*limit = needed;
     less.limits.*limit = needed - 1;

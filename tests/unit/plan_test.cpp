@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "entry_points.h"
 #include "frame_fixture.h"
@@ -338,6 +339,7 @@ void expectRules(const Frame& f) {
     EXPECT_TRUE(next == plan.dispatchCount || plan.dispatches[next].barrierBefore) << "transient " << i;
   }
   std::set<uint32_t> everWritten, used, written;  // in the plan, and in the wave so far
+  uint32_t inPlace = 0;
   for (uint32_t i = 0; i < plan.dispatchCount; ++i) {
     const PellucidDispatch& d = plan.dispatches[i];
     SCOPED_TRACE(d.name);
@@ -345,23 +347,39 @@ void expectRules(const Frame& f) {
     for (const uint32_t groups : d.groups) EXPECT_LE(groups, 65535u);
     if (d.barrierBefore) used = written = {};
     std::multiset<uint32_t> uses;
-    std::set<uint32_t> writes, numbers;
-    for (const PellucidBinding& b : bindingsOf(plan, d)) {
+    std::set<uint32_t> writes, numbers, sampled, stored;
+    const std::vector<PellucidBinding> bound = bindingsOf(plan, d), all = bindingsOf(d.pipeline);
+    ASSERT_EQ(bound.size(), all.size());
+    if (d.indirect) {
+      EXPECT_GE(d.indirectOffset, plan.listsOffset);
+      EXPECT_LE(d.indirectOffset + 5 * sizeof(uint32_t), plan.constantsSize);
+    }
+    for (const PellucidBinding& b : bound) {
       EXPECT_TRUE(numbers.insert(b.binding).second) << "a binding holds one image";
+      const bool oneImage = b.resource == PELLUCID_RESOURCE_OUTPUT && f.frame.output.view == f.frame.irradiance.view;
+      const uint32_t image = oneImage ? static_cast<uint32_t>(PELLUCID_RESOURCE_IRRADIANCE) : b.resource;
+      if (b.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) sampled.insert(image);
+      if (b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) stored.insert(image);
+      const PellucidBinding& ofPipeline = all[static_cast<size_t>(&b - bound.data())];
+      EXPECT_EQ(b.binding, ofPipeline.binding);
+      EXPECT_EQ(b.type, ofPipeline.type);
+      EXPECT_EQ(b.writes, ofPipeline.writes);
       if (b.resource == PELLUCID_RESOURCE_CONSTANTS) {
-        EXPECT_LE(b.offset + b.size, plan.constantsSize);
+        EXPECT_LE(b.offset + b.size, b.writes ? plan.constantsSize : plan.listsOffset) << pellucidBindingName(b.binding);
         EXPECT_EQ(b.offset % 256, 0u);
-        EXPECT_TRUE(b.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || b.size <= 16384);
+        EXPECT_EQ(b.writes, b.offset >= plan.listsOffset) << "dispatches write the lists alone";
+        EXPECT_TRUE(b.type != VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER || (b.size <= 16384 && b.size % 256 == 0));
         continue;
       }
       // The output stands in for a copy that the base level does not make.
       if (b.binding == PELLUCID_BINDING_DESTINATION && name == "base level" && d.pushConstants[0] == 0)
         continue;
       uses.insert(b.resource);
-      // Words of the blocks are read by all passes but those two.
+      // Words of the blocks are read by all passes but one.
       const bool reads =
           b.binding == PELLUCID_BINDING_BLOCKS && name != "base level";
       const bool write = b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && !reads;
+      EXPECT_EQ(b.writes, write) << pellucidBindingName(b.binding);
       if (write) writes.insert(b.resource);
       if (b.resource < PELLUCID_RESOURCE_TRANSIENT0 || b.resource >= PELLUCID_RESOURCE_HISTORY) continue;
       const uint32_t transient = b.resource - PELLUCID_RESOURCE_TRANSIENT0;
@@ -372,6 +390,7 @@ void expectRules(const Frame& f) {
       const bool noEntries = b.binding == PELLUCID_BINDING_ENTRY_POINTS && f.frame.shadowMapCount == 0;
       EXPECT_TRUE(write || noEntries || everWritten.count(b.resource)) << "transient " << transient;
     }
+    inPlace += std::any_of(stored.begin(), stored.end(), [&](uint32_t image) { return sampled.count(image) > 0; });
     for (const uint32_t resource : uses)
       EXPECT_EQ(written.count(resource), 0u) << pellucidResourceName(resource) << " was just written";
     for (const uint32_t resource : writes) {
@@ -387,6 +406,7 @@ void expectRules(const Frame& f) {
     written.insert(writes.begin(), writes.end());
     everWritten.insert(writes.begin(), writes.end());
   }
+  EXPECT_EQ(plan.inPlaceDispatches, inPlace);
 }
 
 TEST(Plan, EveryPlanKeepsTheRules) {
@@ -416,6 +436,50 @@ TEST(Plan, EveryPlanKeepsTheRules) {
     beside.frame.options.gatherSamples = samples;
     expectRules(beside);
   }
+}
+
+// APIs with one state an image ask before they record.
+TEST(Plan, DispatchesInPlaceAreCounted) {
+  struct Row {
+    const char* name;
+    void (*change)(Frame&);
+    uint32_t twoImages, oneImage;  // output and irradiance
+  };
+  constexpr uint32_t kThrough = PELLUCID_FEATURE_TRANSLUCENCY;
+  const Row rows[] = {
+      {"gathered", [](Frame& f) { f.frame.options.gatherSamples = 8; }, 0, 0},
+      {"one thickness a pixel", [](Frame&) {}, 0, 0},
+      {"added to the output", [](Frame& f) { f.frame.options.addToOutput = 1; }, 1, 0},
+      {"not diffused", [](Frame& f) { f.frame.options.features = kThrough; }, 0, 1},
+      {"diffusion alone", [](Frame& f) { f.frame.options.features = PELLUCID_FEATURE_DIFFUSION; }, 0, 0},
+      {"a debug view", [](Frame& f) { f.frame.options.debugView = PELLUCID_DEBUG_THICKNESS; }, 0, 1},
+      {"kept light", [](Frame& f) { f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE; }, 0, 0},
+      {"kept light, not diffused",
+       [](Frame& f) {
+         f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.options.features = kThrough;
+       },
+       0, 1},
+      {"kept probes",
+       [](Frame& f) {
+         f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+         f.frame.options.gatherSamples = 8;
+       },
+       0, 0}};
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.name);
+    Frame f(4);
+    row.change(f);
+    f.frame.output.view = reinterpret_cast<VkImageView>(uintptr_t{2});
+    EXPECT_EQ(f.plan().inPlaceDispatches, row.twoImages);
+    f.frame.output = f.frame.irradiance;
+    if (f.frame.options.addToOutput == 0) {
+      EXPECT_EQ(f.plan().inPlaceDispatches, row.oneImage) << "the output is the irradiance";
+    }
+  }
+  Frame many(20);  // three dispatches
+  many.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+  EXPECT_EQ(many.plan().inPlaceDispatches, 2u);
 }
 
 TEST(Plan, LargeImagesKeepTheirLists) {
@@ -725,6 +789,67 @@ TEST(Plan, ShadersThatAreNotThereAreRefused) {
   EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_UNDEFINED, &shader), kInvalid);
   EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, &shader), kInvalid);
   EXPECT_EQ(get(0, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr), kInvalid);
+}
+
+// Engines without a context have handles of their own. Validation and recording alone refuse images without a view.
+TEST(Plan, ViewsMayBeNull) {
+  for (const uint32_t samples : {0u, 8u}) {
+    Frame f(2);
+    f.frame.options.gatherSamples = samples;
+    const PellucidPlan with = f.plan();
+    f.images.assign(f.images.size(), {});
+    f.use();
+    f.frame.frontDepth = f.frame.irradiance = f.frame.material = f.frame.output = {};
+    const PellucidPlan plan = f.plan();
+    EXPECT_EQ(names(plan), names(with));
+    uint32_t count = 0;
+    EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &count, nullptr), PELLUCID_OK);
+    std::vector<char> constants(static_cast<size_t>(plan.constantsSize));
+    EXPECT_EQ(pellucidWriteConstants(&plan, &f.frame, constants.data(), constants.size()), PELLUCID_OK);
+    EXPECT_NE(f.problems(), "");
+  }
+}
+
+// Engines without a context make pipelines of these.
+TEST(Plan, PipelinesAreKnownWithoutAPlan) {
+  std::set<uint32_t> numbers, uses;
+  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+    SCOPED_TRACE(pellucidPipelineName(p));
+    for (const PellucidBinding& b : bindingsOf(p)) {
+      numbers.insert(b.binding);
+      EXPECT_EQ(b.resource + b.offset + b.size, 0u);
+      EXPECT_TRUE(b.writes == 0 || b.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE || b.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+    }
+    PellucidShader shader{};
+    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &shader), PELLUCID_OK);
+    EXPECT_NE(shader.uses, 0u);
+    uses.insert(shader.uses);
+  }
+  EXPECT_EQ(*numbers.rbegin(), static_cast<uint32_t>(PELLUCID_MAX_BINDING_NUMBER));
+  EXPECT_EQ(uses, (std::set<uint32_t>{PELLUCID_USE_TRANSLUCENCY, PELLUCID_USE_GATHER, PELLUCID_USE_DIFFUSION, PELLUCID_USE_REUSE,
+                                      PELLUCID_USE_DEBUG_VIEWS}));
+  PellucidBinding none[PELLUCID_MAX_BINDINGS];
+  EXPECT_EQ(pellucidGetPipelineBindings(pellucidGetPipelineCount(), none), 0u);
+  EXPECT_EQ(pellucidGetPipelineBindings(0, nullptr), 0u);
+}
+
+// Engines without a context may leave these constants out.
+TEST(Plan, ConstantsOfTheContextHaveTheirDefaults) {
+  constexpr uint32_t kDecorate = 71, kSpecId = 1, kTrue = 48, kFalse = 49, kConstant = 50;
+  std::map<uint32_t, std::set<uint32_t>> defaults;
+  for (uint32_t p = 0; p < pellucidGetPipelineCount(); ++p) {
+    PellucidShader shader{};
+    ASSERT_EQ(pellucidGetShader(p, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &shader), PELLUCID_OK);
+    std::map<uint32_t, uint32_t> ids;  // of constants, by result
+    for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16) {
+      const uint32_t opcode = shader.words[i] & 0xFFFF, *operands = shader.words + i + 1;
+      if (opcode == kDecorate && operands[1] == kSpecId) ids[operands[0]] = operands[2];
+      if (opcode == kTrue || opcode == kFalse) defaults[ids[operands[1]]].insert(opcode == kTrue);
+      if (opcode == kConstant) defaults[ids[operands[1]]].insert(operands[2]);
+    }
+  }
+  EXPECT_EQ(defaults[PELLUCID_SPECIALIZATION_LIGHT_TABLES], std::set<uint32_t>{0});
+  EXPECT_EQ(defaults[PELLUCID_SPECIALIZATION_USES], std::set<uint32_t>{UINT32_MAX});
 }
 
 // For devices without shaderStorageImageWriteWithoutFormat.

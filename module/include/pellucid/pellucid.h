@@ -193,7 +193,8 @@ typedef struct PellucidFrame {
   PellucidImage motion;
   /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
    * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. Two views count as two images
-   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. */
+   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. In
+   * place, the last dispatch may sample and store the image (plan.inPlaceDispatches). */
   PellucidImage output;
   /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
@@ -222,7 +223,8 @@ typedef struct PellucidFrame {
 PELLUCID_API void pellucidInitFrame(PellucidFrame* frame);
 
 /* Checks every convention and the range of each field (docs/materials.md). Calls `fn` (optional) with each warning and error. Warnings
- * alone return PELLUCID_OK. Errors: INVALID_ARGUMENT; CAPACITY for more shadow images than a plan can bind. */
+ * alone return PELLUCID_OK. Only this function and recording refuse null views. This function alone checks layouts. Any handles can stand
+ * for views, with layout GENERAL. Errors: INVALID_ARGUMENT; CAPACITY for more shadow images than a plan can bind. */
 PELLUCID_API PellucidResult pellucidValidateFrame(const PellucidFrame* frame, PellucidMessageFn fn, void* user);
 
 /* An image that the caller creates: 2D, one mip, usage SAMPLED | STORAGE. A transient holds nothing between frames. Its memory may serve
@@ -242,8 +244,8 @@ typedef struct PellucidImageNeed {
 
 /* Lists the transients of this frame in order, then with reuse the persistent image. The images serve every render rect. Writes at most
  * *count needs, and sets *count to the number of all. `needs` may be NULL. Transients need no views yet. Optional inputs count as given
- * if they have views. `output` and `irradiance` have the plan's views, because frames in place may need one transient more. Any handles
- * can stand for views. Errors: INVALID_ARGUMENT, CAPACITY. */
+ * if they have views; all other views may be null. `output` and `irradiance` have the plan's views, because frames in place may need one
+ * transient more. Any handles can stand for views. Errors: INVALID_ARGUMENT, CAPACITY. */
 PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* ---- Plan and recording -------------------------------------------------------------------------- */
@@ -252,7 +254,8 @@ PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, ui
 typedef struct PellucidPlan PellucidPlan;
 
 /* Plans a frame. The function is pure: the same frame and previous plan give the same plan, without a device or allocation. The plan
- * keeps no pointer to the frame. Optional images count as given if they have views. `previous`: the plan of the last recorded frame,
+ * keeps no pointer to the frame. Views may be null, and any handles can stand for views. Optional images count as given if they have views,
+ * and an output without a view as in place. `previous`: the plan of the last recorded frame,
  * for options.reuse alone, or NULL. Errors: INVALID_ARGUMENT; CAPACITY for more dispatches than a plan holds. */
 PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
@@ -273,8 +276,9 @@ typedef struct PellucidConstantsSlice {
   void* mapped;
 } PellucidConstantsSlice;
 
-/* Writes the constants of a plan into `size` bytes at `mapped`. The plan was made from this frame. Image views are not checked. Errors:
- * INVALID_ARGUMENT for a null pointer, a frame that pellucidValidateFrame refuses, or a plan of another frame; BUFFER_TOO_SMALL. */
+/* Writes the constants of a plan into `size` bytes at `mapped`. The plan was made from this frame. Views may be null if they were null for
+ * the plan. Errors: INVALID_ARGUMENT for a null pointer, a frame that pellucidBuildPlan refuses, or a plan of another frame;
+ * BUFFER_TOO_SMALL. */
 PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame, void* mapped, size_t size);
 
 /* Stages and accesses of the barriers around a recording. Any queue family with COMPUTE may run a recording. */

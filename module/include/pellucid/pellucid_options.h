@@ -139,7 +139,8 @@ typedef struct PellucidFrameOptions {
   VkFormat outputFormat;
   /* 0 (default): the result replaces the output. 1: the result is added to the output's color, for renderers that do not composite in a
    * later pass (docs/integration.md). The sum is clamped to 0..65504, NaN counts as 0, and alpha stays. The output then has usage
-   * SAMPLED, too, and is not the irradiance image. Debug views still replace the output. */
+   * SAMPLED, too, and is not the irradiance image. Debug views still replace the output. The last dispatch samples and stores the output
+   * (plan.inPlaceDispatches). */
   uint32_t addToOutput;
 
   /* ---- the gather: light of maps that comes through ---- */
@@ -181,7 +182,7 @@ typedef struct PellucidFrameOptions {
 
   /* ---- reuse, debug views, thesis ---- */
 
-  /* PellucidReuse; default NONE. */
+  /* PellucidReuse; default NONE. With ALTERNATE and COHERENCE, dispatches may sample and store `history` (plan.inPlaceDispatches). */
   uint32_t reuse;
   /* Change of the cosine that COHERENCE tolerates, 0..2; default .005. Whelan 2009, 4.7.5, multiplies the threshold by frame time / budget
    * if this quotient is above 1. */

@@ -1,4 +1,5 @@
-/* Fields of a plan, for engines that record plans themselves.
+/* Fields of a plan, for engines that record plans themselves. docs/integration.md, "Through an RHI", has the calls that replace
+ * pellucidRecordPlan.
  *
  * A plan is plain data with pointers to static strings alone. A copy of a plan is a valid plan. A plan outlives its
  * frame. pellucid.h includes pellucid_plan.h, because a caller's plan needs a complete type.
@@ -32,7 +33,8 @@ typedef enum PellucidResource {
 /* Limits of plans and dispatches. */
 enum {
   PELLUCID_MAX_DISPATCHES = 32,
-  PELLUCID_MAX_BINDINGS = 24,
+  PELLUCID_MAX_BINDINGS = 24,       /* bindings of a dispatch or pipeline */
+  PELLUCID_MAX_BINDING_NUMBER = 39, /* the largest PellucidBinding::binding */
   PELLUCID_MAX_SKIPS = 16,
   PELLUCID_PUSH_CONSTANT_BYTES = 16,
   PELLUCID_PLAN_SLOTS = 13,
@@ -40,15 +42,18 @@ enum {
   PELLUCID_PLAN_STATE_WORDS = 48
 };
 
-/* One binding of a dispatch, by pellucidGetBindings. */
+/* One binding of a dispatch, by pellucidGetBindings, or of a pipeline, by pellucidGetPipelineBindings. */
 typedef struct PellucidBinding {
-  /* Number in set 0, the same in all pipelines. pellucidBindingName names it. */
+  /* Number in set 0, 0..PELLUCID_MAX_BINDING_NUMBER, the same in all pipelines. pellucidBindingName names it. */
   uint32_t binding;
   /* Type of the descriptor. */
   VkDescriptorType type;
-  /* PellucidResource. */
+  /* 1: the pipeline writes the resource, and may read it, too. 0: the pipeline only reads it. A storage image or buffer may have 0. */
+  uint32_t writes;
+  /* PellucidResource; 0 for a pipeline. */
   uint32_t resource;
-  /* Bytes: the range of the constants slice. Images have 0. */
+  /* Bytes: the range of the constants slice. The offset is a multiple of 256, and so is the size of a uniform buffer, at most 16384. The
+   * range ends inside plan.constantsSize. Images and pipelines have 0. */
   VkDeviceSize offset, size;
 } PellucidBinding;
 
@@ -97,8 +102,12 @@ struct PellucidPlan {
   uint32_t skipCount;
   /* Lights that can contribute. Skips list the other lights. */
   uint32_t activeLights;
-  /* Bytes that pellucidWriteConstants writes. */
+  /* Bytes that pellucidWriteConstants writes, a multiple of 256. */
   VkDeviceSize constantsSize;
+  /* Bytes from the slice's offset to the lists, a multiple of 256; constantsSize in plans without lists. Dispatches write only the bytes
+   * from here to constantsSize, which also hold all indirectOffset. These bytes may lie in another buffer of usage STORAGE_BUFFER |
+   * INDIRECT_BUFFER. There, PellucidBinding::offset of the storage buffer with writes 1, and indirectOffset, are less by listsOffset. */
+  VkDeviceSize listsOffset;
   /* dispatchCount dispatches, in the order of recording. */
   PellucidDispatch dispatches[PELLUCID_MAX_DISPATCHES];
   /* skipCount skips. */
@@ -108,6 +117,12 @@ struct PellucidPlan {
   /* Age of options.history in frames. ALTERNATE, COHERENCE: frames since a frame computed the light that comes through; 0: this frame
    * computes it. ACCUMULATE: frames since accumulation began. */
   uint32_t historyAge;
+  /* Number of dispatches that sample and store one image, for which Vulkan's layout GENERAL serves. APIs with one state an image cannot run
+   * them. Output and irradiance count as one image unless they have two views. 0 without each of the following:
+   * - options.addToOutput 1;
+   * - an output that is the irradiance, in plans that do not diffuse, and in debug views;
+   * - options.reuse ALTERNATE or COHERENCE of light that one dispatch cannot bind, without a gather. */
+  uint32_t inPlaceDispatches;
   /* Private; pellucidGetBindings reads the images. */
   uint32_t shadowImages[PELLUCID_PLAN_SHADOW_IMAGES];
   /* Private: data by which the next plan decides about reuse, and the requirements of recording. */
@@ -139,14 +154,24 @@ typedef struct PellucidShader {
   uint32_t constantCount;
   /* Specialization constants of the pipeline. */
   const PellucidSpecialization* constants;
+  /* PellucidUse bits of frames for which plans have the pipeline. An engine without one of these uses does not need the pipeline. */
+  uint32_t uses;
 } PellucidShader;
 
-/* Ids of specialization constants that depend on the context: PellucidContextOptions::lightTables and uses. `uses` 0 becomes all bits.
- * PellucidShader::constants does not contain them. */
-enum { PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5, PELLUCID_SPECIALIZATION_USES = 6 };
+/* Ids of specialization constants that depend on the context. PellucidShader::constants does not contain them. Pipelines that lack an id
+ * ignore it. */
+enum {
+  /* PellucidContextOptions::lightTables, a boolean. Default in the SPIR-V: 0. */
+  PELLUCID_SPECIALIZATION_LIGHT_TABLES = 5,
+  /* PellucidContextOptions::uses, where all bits stand for `uses` 0. Default in the SPIR-V: all bits. */
+  PELLUCID_SPECIALIZATION_USES = 6
+};
 
 /* Number of pipelines. A pipeline has an index below this number. */
 PELLUCID_API uint32_t pellucidGetPipelineCount(void);
+/* Writes the bindings of a pipeline, in the order of binding numbers, at most PELLUCID_MAX_BINDINGS. Returns their number. Every dispatch
+ * of the pipeline has these binding numbers, types and `writes`. 0: there is no such pipeline, or `bindings` is NULL. */
+PELLUCID_API uint32_t pellucidGetPipelineBindings(uint32_t pipeline, PellucidBinding* bindings);
 /* Writes the shader of a pipeline. shadowViewType and outputFormat are those of PellucidContextOptions.
  * - UNDEFINED: shader->words are the library's, and declare StorageImageWriteWithoutFormat. `words` may be NULL.
  * - Other formats: the function writes the words of this format to `words`, and shader->words becomes `words`. The caller has room for
