@@ -11,7 +11,7 @@
 #include "gather/probe.glsl"
 
 layout(push_constant) uniform Pass { DiffusePass pass; };
-layout(set = 0, binding = PELLUCID_BINDING_FILTERED_PROBES) uniform utexture2D probesImage;
+layout(set = 0, binding = PELLUCID_BINDING_FILTERED_PROBES) uniform utexture2D filteredProbesImage;
 
 const int kInvocations = GROUP_SIDE * GROUP_ROWS, kPixelsX = PELLUCID_DIFFUSE_COLUMNS, kPixelsY = PELLUCID_DIFFUSE_ROWS;
 const int kTexelsX = kPixelsX / 4, kTexelsY = kPixelsY / 4; // of level 2
@@ -58,8 +58,8 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
     int row = i & (side - 1);
     if (row == 0) { // a cell begins
       ivec2 cell = ((top + ivec2(0, i)) >> shiftOf(side)) + ivec2(0, frame.lattice.w);
-      uvec4 a = texelFetch(probesImage, cell, 0), b = texelFetch(probesImage, cell + ivec2(1, 0), 0);
-      uvec4 c = texelFetch(probesImage, cell + ivec2(0, 1), 0), d = texelFetch(probesImage, cell + ivec2(1, 1), 0);
+      uvec4 a = texelFetch(filteredProbesImage, cell, 0), b = texelFetch(filteredProbesImage, cell + ivec2(1, 0), 0);
+      uvec4 c = texelFetch(filteredProbesImage, cell + ivec2(0, 1), 0), d = texelFetch(filteredProbesImage, cell + ivec2(1, 1), 0);
       added = mix(addedOf(a), addedOf(b), across);
       addedStep = perSide * (mix(addedOf(c), addedOf(d), across) - added);
       returned = mix(returnedOf(a), returnedOf(b), across);
@@ -90,7 +90,7 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
   vec3 added = vec3(0.0), returned = vec3(0.0);
   vec2 fraction = vec2(pixel & (side - 1)) / float(side);
   uvec4 probes[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(probesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side, frame.lattice.w);
+  [[unroll]] for (int i = 0; i < 4; ++i) probes[i] = probeOf(filteredProbesImage, (pixel >> shiftOf(side)) + ivec2(i & 1, i >> 1), side, frame.lattice.w);
   [[unroll]] for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1), cell = (pixel >> shiftOf(side)) + corner;
     vec2 linear = mix(1.0 - fraction, fraction, vec2(corner));

@@ -164,7 +164,7 @@ struct FrameConstants {
   Camera camera;
   uvec4 rect;          // x, y, end x, end y
   ivec4 lattice;       // x, y: the image's first pixel, 0..127; z: pattern of samples of cell 0, 0; w: first row of
-                       // the filtered probes in their image
+                       // the filtered probes in options.history, not 0 with accumulation alone
   ivec4 kept;          // of the earlier frame's probes: x, y: the image's first pixel; z: their first row; w: 0
   vec4 motion;         // x, y: pixels per unit of the motion image; z: factor of the earlier frame's light, 0: none is kept
   uvec4 flags;         // x: PELLUCID_FLAG_*; y: materials; z: debug view; w: angle model

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "pellucid/pellucid_plan.h"
@@ -18,11 +20,14 @@ inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resourc
       {PELLUCID_RESOURCE_ALBEDO, &frame.albedo},
       {PELLUCID_RESOURCE_MATERIAL, &frame.material},
       {PELLUCID_RESOURCE_MOTION, &frame.motion},
-      {PELLUCID_RESOURCE_OUTPUT, &frame.output}};
+      {PELLUCID_RESOURCE_OUTPUT, &frame.output},
+      {PELLUCID_RESOURCE_HISTORY, &frame.options.history}};
   for (const auto& [name, image] : named)
     if (name == resource) return *image;
-  return resource >= PELLUCID_RESOURCE_SHADOW0 ? frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0]
-                                               : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0];
+  if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
+  const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+  if (transient >= PELLUCID_MAX_TRANSIENTS) throw std::logic_error("no image of a frame has the resource " + std::to_string(resource));
+  return frame.transients[transient];
 }
 
 }  // namespace pellucid::harness

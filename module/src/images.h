@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-// Images that have a field of their own. Adding one: a row here, and its binding in the passes that read it.
+// Images that have a field of their own. CONTRIBUTING.md says how one is added.
 struct ImageField {
   uint32_t resource;  // PellucidResource
   const char* name;   // as in the API, plans and messages
