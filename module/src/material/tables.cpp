@@ -64,7 +64,12 @@ shared::MaterialConstants constantsOf(const PellucidMaterial& m) {
 
 }  // namespace
 
-bool hasTables(const PellucidMaterial& m) { return tablesOf(m).fingerprint == fingerprintOf(m); }
+bool hasTables(const PellucidMaterial& m) {
+  static_assert(offsetof(MaterialTables, fingerprint) == 0);
+  uint64_t fingerprint;
+  std::memcpy(&fingerprint, m.tables, sizeof fingerprint);
+  return fingerprint == fingerprintOf(m);
+}
 
 }  // namespace pellucid
 
