@@ -30,7 +30,7 @@ struct RhiItem {
   VkDeviceSize offset, size;
 };
 
-// A texture has one state. A buffer may have two at once.
+// A texture has one state. A buffer may have two at once, which Direct3D 12 does not allow.
 enum RhiState : uint32_t { kRhiSampled = 1, kRhiStored = 2, kRhiCommands = 4 };
 
 // What a plan needs of an RHI, on one command list. No barrier is automatic.
@@ -42,7 +42,7 @@ public:
                                                       std::span<const PellucidSpecialization> constants,
                                                       std::span<const PellucidBinding> slots,
                                                       uint32_t pushConstantBytes) = 0;
-  // From the next commitBarriers() on. Stored after Stored waits for the dispatches before, too.
+  // Sets the state from the next commitBarriers() on. A change from Stored to Stored also needs a barrier.
   virtual void setState(RhiTexture texture, RhiState state) = 0;
   virtual void setState(RhiBuffer buffer, uint32_t states) = 0;
   virtual void commitBarriers() = 0;
@@ -60,8 +60,9 @@ struct RhiConstants {
 
 class RhiPass {
 public:
-  // Makes the pipelines of options.uses, at any time before the first plan. Formats and view types are those
-  // of a context.
+  // Makes the pipelines of options.uses, at any time before the first plan. `options`: what pellucidInitContextDesc writes into
+  // desc.options, then changes. Its uses cover all frames: nothing compares THIN_WALLS, AMBIENT, THESIS, formats and light tables
+  // with plans.
   RhiPass(Rhi& rhi, const PellucidContextOptions& options)
       : rhi_(rhi), pipelines_(pellucidGetPipelineCount()) {
     for (uint32_t i = 0; i < pipelines_.size(); ++i) createPipeline(i, options);
@@ -109,6 +110,7 @@ private:
           lists |= kRhiStored;
     }
     if (lists != 0) rhi_.setState(buffers.lists, lists);
+    rhi_.setState(buffers.constants, kRhiSampled);  // after the engine's copy
   }
 
   void recordDispatch(const PellucidPlan& plan, uint32_t index, const PellucidFrame& frame,
@@ -158,9 +160,10 @@ private:
       case PELLUCID_RESOURCE_MOTION:
         return frame.motion.view;
     }
-    return resource >= PELLUCID_RESOURCE_SHADOW0
-               ? frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0].view
-               : frame.transients[resource - PELLUCID_RESOURCE_TRANSIENT0].view;
+    if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0].view;
+    const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
+    if (transient >= PELLUCID_MAX_TRANSIENTS) throw std::invalid_argument("a plan of a newer header");
+    return frame.transients[transient].view;
   }
 
   static void require(PellucidResult result) {

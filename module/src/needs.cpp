@@ -1,4 +1,4 @@
-// The images that a frame's dispatches need, of the caller's and besides.
+// The images that the caller creates for a frame: transients, and the persistent image of reuse.
 #include <algorithm>
 
 #include "planner.h"

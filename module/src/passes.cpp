@@ -69,7 +69,7 @@ void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup&
       .lights(group)
       .colors(source, destination)
       .push(shared::TranslucencyPass{through, group.lightCount, write});
-  // No pixel reads the source of these lights, and the history is stored.
+  // The first dispatch into the history does not read its source.
   if (starts) step.standIn(PELLUCID_BINDING_SOURCE, PELLUCID_RESOURCE_IRRADIANCE);
 }
 
@@ -87,7 +87,7 @@ void addThinWalls(Planner& p, const LightGroup& group, uint32_t source, uint32_t
 
 // ---- Light of an earlier frame ----------------------------------------------------------------------
 
-// With reuse of pixels' light: kept between frames.
+// With reuse of pixels' light, the image is kept between frames.
 constexpr MadeImage kLightHistory{.texels = Texels::Colors,
                                   .made = [](const FrameFacts& f) { return f.stages.history; },
                                   .extent = &extentOfPixels};
@@ -186,7 +186,7 @@ uint32_t groupsAlong(int32_t first, int32_t size, uint32_t side) {
   return static_cast<uint32_t>(((first + size - 1) >> shift) - (first >> shift) + 1);
 }
 
-// Levels 4 to the coarsest. Their parts follow level 7, whether or not that is made.
+// Levels 4 to the coarsest. Groups are laid out over level 7, even if the plan does not make this level.
 void addCoarseLevels(Planner& p) {
   if (p.facts.coarsestLevel <= 3) return;
   const auto& rect = p.facts.pyramid.levels[PELLUCID_LAST_LEVEL].rect;
@@ -284,7 +284,7 @@ uint32_t partsOfBlock(const FrameFacts& f, uint32_t side) {
   const uint32_t along = PELLUCID_BLOCK / (side * f.gatherSpacing);
   return along * along;
 }
-// `adds`: to what probes found in an earlier dispatch.
+// `adds`: the dispatch adds its light to the probes of an earlier dispatch.
 void addProbes(Planner& p, const LightGroup& group, bool adds) {
   p.add(kProbesPass, "probes")
       .blocks(PELLUCID_LIST_PROBES, partsOfBlock(p.facts, PELLUCID_PROBES_GROUP))
@@ -307,7 +307,7 @@ constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
                                                    PELLUCID_BINDING_BLOCKS),
                                  .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
 
-// And averages them with the earlier frame's: a variant, as its registers would cost other frames 2 us.
+// This variant also averages probes with those of the earlier frame. Its registers would cost other frames 2 us.
 constexpr PellucidSpecialization kAccumulates[] = {{PELLUCID_CONSTANT_ACCUMULATES, 1}};
 constexpr Pass kAccumulateProbesPass{.pipeline = "accumulate_probes",
                                      .words = kFilterProbes,

@@ -24,7 +24,7 @@ struct MadeImage {
   Extent (*extent)(const FrameFacts&);  // of frames with any render rect
 };
 
-// All transients, in the order of PellucidFrame::transients; a frame has those that it makes.
+// All transients, in the order of PellucidFrame::transients. A frame has those whose `made` is true.
 std::span<const MadeImage* const> transientImages();
 // Of a frame that keepsHistory.
 const MadeImage& historyImage(const FrameFacts& facts);

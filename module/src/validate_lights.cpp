@@ -200,6 +200,11 @@ void checkLights(const Setup& setup, Findings& out) {
 
 void checkGroups(const FrameFacts& facts, Findings& out) {
   const PellucidFrame& f = facts.frame;
+  // Passes over blocks have a group for each, in x.
+  constexpr uint32_t kMostBlocks = 65535;  // least maxComputeWorkGroupCount of devices
+  if (facts.stages.diffusion && facts.blocks.count() > kMostBlocks)
+    out.error("options.renderRect", "touches ", facts.blocks.count(), " blocks of ", PELLUCID_BLOCK, " x ", PELLUCID_BLOCK,
+              " pixels; a dispatch has ", kMostBlocks, " groups at most: record parts");
   warnOfShadowMaps(facts, out);
   if (facts.lights.count > 1 && facts.debug() && f.options.debugView != PELLUCID_DEBUG_IRRADIANCE)
     out.error("options.debugView", "is ", f.options.debugView,

@@ -17,7 +17,8 @@
  * - lengths: scene units of `metersPerUnit` meters. Lengths of materials: mm;
  * - colors: linear, scene-referred, R, G, B;
  * - ranges: colors and intensities 0..1e15, other scene values -1e15..1e15;
- * - defaults: 0 where a comment says "0 (default)". pellucidInit* writes all defaults;
+ * - defaults: 0 where a comment says "0 (default)". pellucidInit* writes all defaults. Structs without such a function, as
+ *   PellucidLight and PellucidShadowMap, start from zeros;
  * - errors: a function that returns PellucidResult can return the errors in its comment. Codes stand without PELLUCID_ERROR_.
  */
 #ifndef PELLUCID_H
@@ -159,7 +160,7 @@ enum { PELLUCID_MAX_TRANSIENTS = 8 };
 
 /* Input and output of one recording. */
 typedef struct PellucidFrame {
-  /* Width and height in pixels of every screen-sized image, 1..65536. */
+  /* Width and height in pixels of every screen-sized image, 1..65536. Frames that diffuse touch at most 65535 blocks of 64 x 64 pixels. */
   uint32_t imageExtent[2];
   /* Meters of a scene unit, 1e-9..1e9; default 1. */
   float metersPerUnit;
@@ -168,8 +169,10 @@ typedef struct PellucidFrame {
   /* The camera's view matrix: a rotation and a translation; default identity. docs/integration.md, "Far from the origin". */
   float viewFromWorld[16];
   /* Factor of the irradiance E in `irradiance` and `output`, 1e-9..1e9; default 1. Lights do not have the factor. preExposure is
-   * the product of three factors: 1 / pi if the image holds E / pi; 1 - F if lighting subtracts the Fresnel reflection F; the exposure.
-   * Take F at normal incidence. */
+   * the product of three factors:
+   * - 1 / pi if the image holds E / pi;
+   * - 1 - F if lighting subtracts the Fresnel reflection F, taken at normal incidence;
+   * - the exposure. */
   float preExposure;
 
   /* Required; a depth format or one float channel, in options.frontDepthEncoding: the surface that the camera sees. The surface's normal
@@ -192,9 +195,9 @@ typedef struct PellucidFrame {
    * this frame minus the place in the earlier frame. Its unit is the image's width and height. */
   PellucidImage motion;
   /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
-   * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. Two views count as two images
-   * that share no memory, and one view as both images. In place, pass one view twice. An output without a view counts as in place. In
-   * place, the last dispatch may sample and store the image (plan.inPlaceDispatches). */
+   * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. If `output` and
+   * `irradiance` have one view, they are one image. If they have two views, the views share no memory. Without a view, the output counts as the
+   * irradiance image. plan.inPlaceDispatches says whether a dispatch samples and stores one image. */
   PellucidImage output;
   /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
@@ -234,7 +237,8 @@ typedef struct PellucidImageNeed {
   VkFormat format;
   /* Width and height in pixels. */
   uint32_t extent[2];
-  /* Indices into plan.dispatches: the first and the last dispatch that use the image. */
+  /* Indices into plan.dispatches: the first and the last dispatch between whose barriers the image is used. With reuse, they cover the plans
+   * of both kinds of frames. */
   uint32_t firstDispatch, lastDispatch;
   /* Bytes of all texels. The device may need more. */
   uint64_t bytes;
@@ -245,7 +249,7 @@ typedef struct PellucidImageNeed {
 /* Lists the transients of this frame in order, then with reuse the persistent image. The images serve every render rect. Writes at most
  * *count needs, and sets *count to the number of all. `needs` may be NULL. Transients need no views yet. Optional inputs count as given
  * if they have views; all other views may be null. `output` and `irradiance` have the plan's views, because frames in place may need one
- * transient more. Any handles can stand for views. Errors: INVALID_ARGUMENT, CAPACITY. */
+ * transient more. Any handles can stand for views. Errors: INVALID_ARGUMENT; CAPACITY, if needs are written. */
 PELLUCID_API PellucidResult pellucidGetImageNeeds(const PellucidFrame* frame, uint32_t* count, PellucidImageNeed* needs);
 
 /* ---- Plan and recording -------------------------------------------------------------------------- */
@@ -255,8 +259,8 @@ typedef struct PellucidPlan PellucidPlan;
 
 /* Plans a frame. The function is pure: the same frame and previous plan give the same plan, without a device or allocation. The plan
  * keeps no pointer to the frame. Views may be null, and any handles can stand for views. Optional images count as given if they have views,
- * and an output without a view as in place. `previous`: the plan of the last recorded frame,
- * for options.reuse alone, or NULL. Errors: INVALID_ARGUMENT; CAPACITY for more dispatches than a plan holds. */
+ * and an output without a view as in place. `previous`: the plan of the last recorded frame, for options.reuse alone, or NULL. `previous` and
+ * `plan` may be one object. On failure the plan is empty. Errors: INVALID_ARGUMENT; CAPACITY for more dispatches than a plan holds. */
 PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
 /* The most bytes that a slice needs for these numbers of materials, lights and shadow maps. A map of two lights counts twice. */

@@ -155,8 +155,8 @@ typedef struct PellucidFrameOptions {
    * diffusion length. */
   uint32_t gatherSpacing;
   /* 1: light of all lights enters the face that a pixel hides, frame.backDepth gives the thickness, and shadow maps only occlude. 0
-   * (default): lights with a map of front faces have the light-space thickness. Lights without such a map are always as with 1. Shadow
-   * maps and backDepthEncoding THICKNESS refuse 1, as a thickness does not tell where the hidden face lies. */
+   * (default): lights with a map of front faces have the light-space thickness. Lights without such a map are always as with 1. With
+   * backDepthEncoding THICKNESS, a frame that has shadow maps refuses 1, because a thickness does not tell where the hidden face lies. */
   uint32_t cameraThickness;
 
   /* ---- other light ---- */

@@ -66,7 +66,7 @@ typedef struct PellucidDispatch {
   /* Push constants from offset 0 on. */
   uint32_t pushConstants[PELLUCID_PUSH_CONSTANT_BYTES / 4];
   /* Bytes from the slice's offset to five 32-bit words. The first three are the VkDispatchIndirectCommand. After the frame, word 4 has
-   * the x of the workgroups that ran, words 1 and 2 have their y and z, and word 0 is 0 again. A host that reads the words needs a barrier
+   * the x of the workgroups that ran. Words 1 and 2 have their y and z. Word 0 is 0 again. A host that reads the words needs a barrier
    * from PELLUCID_STAGES / PELLUCID_WRITES to HOST / HOST_READ. The host reads after the submission's fence and before the next
    * pellucidWriteConstants into the slice. */
   uint32_t indirectOffset;
@@ -118,7 +118,7 @@ struct PellucidPlan {
    * computes it. ACCUMULATE: frames since accumulation began. */
   uint32_t historyAge;
   /* Number of dispatches that sample and store one image, for which Vulkan's layout GENERAL serves. APIs with one state an image cannot run
-   * them. Output and irradiance count as one image unless they have two views. 0 without each of the following:
+   * them. Output and irradiance count as one image unless they have two views. Above 0 only with one of the following:
    * - options.addToOutput 1;
    * - an output that is the irradiance, in plans that do not diffuse, and in debug views;
    * - options.reuse ALTERNATE or COHERENCE of light that one dispatch cannot bind, without a gather. */
