@@ -282,6 +282,15 @@ TEST(Validate, LightIsNotAddedToTheIrradiance) {
   EXPECT_EQ(f.problems(), "");
 }
 
+TEST(Validate, MoreBlocksThanADispatchHasGroupsAreRefused) {
+  Frame f;
+  for (PellucidImage& image : f.frame.transients) image = Frame::view();
+  f.frame.imageExtent[0] = f.frame.imageExtent[1] = 16384;  // 258 blocks a side, with the border
+  EXPECT_EQ(f.problems().find("options.renderRect touches 66564 blocks"), 0u) << f.problems();
+  f.frame.options.renderRect[2] = 16384, f.frame.options.renderRect[3] = 8192;
+  EXPECT_EQ(f.problems(), "");
+}
+
 TEST(Validate, NullIsAnError) {
   EXPECT_EQ(pellucidValidateFrame(nullptr, nullptr, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
   EXPECT_EQ(pellucidBuildPlan(nullptr, nullptr, nullptr), PELLUCID_ERROR_INVALID_ARGUMENT);
