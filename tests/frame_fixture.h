@@ -18,22 +18,24 @@ namespace pellucid::test {
 
 // skin1-like numbers; only their validity matters where no picture is compared.
 inline PellucidMaterial plainMaterial() {
-  static PellucidMaterial m{};
-  if (m.gaussianCount > 0) return m;
-  m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
-  m.gaussianCount = 2;
-  for (int c = 0; c < 3; ++c) {
-    const float t[5] = {0.6f, 0.5f, 0.3f, 2.0f, 0};
-    std::copy(t, t + 5, m.transmittance[c]);
-    m.reflectance[c] = 0.5f;
-    m.gaussianVariance[c][0] = 0.2f;
-    m.gaussianVariance[c][1] = 2.0f;
-    m.gaussianWeight[c][0] = 0.4f;
-    m.gaussianWeight[c][1] = 0.6f;
-    m.radius[c] = 5;
-  }
-  EXPECT_EQ(pellucidMakeMaterialTables(&m, nullptr, nullptr), PELLUCID_OK);
-  return m;
+  static const PellucidMaterial material = [] {
+    PellucidMaterial m{};
+    m.transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+    m.gaussianCount = 2;
+    for (int c = 0; c < 3; ++c) {
+      const float t[5] = {0.6f, 0.5f, 0.3f, 2.0f, 0};
+      std::copy(t, t + 5, m.transmittance[c]);
+      m.reflectance[c] = 0.5f;
+      m.gaussianVariance[c][0] = 0.2f;
+      m.gaussianVariance[c][1] = 2.0f;
+      m.gaussianWeight[c][0] = 0.4f;
+      m.gaussianWeight[c][1] = 0.6f;
+      m.radius[c] = 5;
+    }
+    EXPECT_EQ(pellucidMakeMaterialTables(&m, nullptr, nullptr), PELLUCID_OK);
+    return m;
+  }();
+  return material;
 }
 
 struct Frame {
@@ -88,7 +90,7 @@ struct Frame {
   std::string tables() const {
     std::string text;
     // A material's tables take milliseconds: those of the last materials are kept.
-    static std::deque<PellucidMaterial> made{plainMaterial()};
+    thread_local std::deque<PellucidMaterial> made{plainMaterial()};
     for (uint32_t i = 0; frame.materials && frame.materialCount <= 255 && i < frame.materialCount; ++i) {
       auto* m = const_cast<PellucidMaterial*>(&frame.materials[i]);
       const auto same = std::find_if(made.begin(), made.end(), [&](const PellucidMaterial& other) {
