@@ -112,7 +112,7 @@ Resource BenchFrame::planned(uint32_t binding) const {
   if (!b) throw DeviceError("the plan's first dispatch has no binding " + std::to_string(binding));
   if (b->resource == PELLUCID_RESOURCE_CONSTANTS)
     return VkDescriptorBufferInfo{constants_.handle(), b->offset, b->size};
-  return imageOf(run_.frame(), b->resource);
+  return *pellucidGetImage(&run_.frame(), b->resource);
 }
 
 std::shared_ptr<GpuImage> BenchFrame::image() const {

@@ -169,7 +169,7 @@ inline std::vector<PellucidBinding> bindingsOf(const PellucidPlan& plan, const P
   return all;
 }
 
-// What a pipeline binds.
+// The bindings of a pipeline.
 inline std::vector<PellucidBinding> bindingsOf(uint32_t pipeline) {
   std::vector<PellucidBinding> all(PELLUCID_MAX_BINDINGS);
   all.resize(pellucidGetPipelineBindings(pipeline, all.data()));

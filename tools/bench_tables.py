@@ -2,7 +2,7 @@
 
     python3 bench_tables.py RESULTS.json[,RESULTS.json...] TABLE [--check FILE | --update FILE]
 
-Without an option the table is printed. The tables headline and samples join two files.
+Without an option the table is printed. The tables headline and samples may join two files; all others are of one.
 """
 import json
 import math
@@ -216,7 +216,9 @@ def main(results, name, mode=None, path=None):
     for result in results.split(","):
         with open(result, encoding="utf-8") as file:
             runs.append(json.load(file))
-    table = TABLES[name](*runs if name in ("headline", "samples") else runs[:1])
+    if len(runs) > 1 and name not in ("headline", "samples"):
+        sys.exit(f"{results}: the table {name} is of one file")
+    table = TABLES[name](*runs)
     if not path:
         print(table, end="")
         return

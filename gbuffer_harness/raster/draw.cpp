@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "common/error.h"
-#include "common/frame_image.h"
 #include "common/srgb.h"
 #include "kRasterCaster.h"
 #include "kRasterCount.h"
@@ -118,7 +117,7 @@ void addPlanned(const PlannedInputs& planned, DescriptorWrites& writes) {
       if (b.resource == PELLUCID_RESOURCE_CONSTANTS)
         writes.buffer(to, wanted.type, {planned.constants, b.offset, b.size});
       else
-        writes.image(to, wanted.type, VK_NULL_HANDLE, imageOf(planned.frame, b.resource));
+        writes.image(to, wanted.type, VK_NULL_HANDLE, *pellucidGetImage(&planned.frame, b.resource));
     }
 }
 

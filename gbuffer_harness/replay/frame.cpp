@@ -94,6 +94,23 @@ float nearestLine(const PellucidMaterial& m, uint32_t channel) {
   return static_cast<float>(bestLength);
 }
 
+void exchangeTransmittance(PellucidMaterial& m, TransmittanceChoice choice) {
+  switch (choice) {
+    case TransmittanceChoice::Material:
+      break;
+    case TransmittanceChoice::Linear:
+      for (uint32_t c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
+      break;
+    case TransmittanceChoice::Gaussians:
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
+      break;
+    case TransmittanceChoice::GaussiansAsPrinted:
+      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
+      break;
+  }
+}
+
 // Views of different images that are never dereferenced: planning and validation only ask whether a view is
 // there and which are of one image.
 class Placeholders {
@@ -138,37 +155,12 @@ PellucidLight pellucidLight(const Light& light) {
   return l;
 }
 
-namespace {
-
-void exchangeTransmittance(PellucidMaterial& m, TransmittanceChoice choice) {
-  switch (choice) {
-    case TransmittanceChoice::Material:
-      break;
-    case TransmittanceChoice::Linear:
-      for (uint32_t c = 0; c < 3; ++c) m.transmittance[c][0] = nearestLine(m, c);
-      m.transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
-      break;
-    case TransmittanceChoice::Gaussians:
-      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS;
-      break;
-    case TransmittanceChoice::GaussiansAsPrinted:
-      m.transmittanceModel = PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED;
-      break;
-  }
-}
-
-}  // namespace
-
 std::vector<PellucidMaterial> withTransmittance(std::vector<PellucidMaterial> materials, TransmittanceChoice choice) {
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (!materials[i].thinWalled) exchangeTransmittance(materials[i], choice);
-    std::string field = "materials[" + std::to_string(i) + "].", sentence;
-    std::array<std::string*, 2> said{&field, &sentence};
-    const auto keep = [](void* user, PellucidSeverity, const char* name, const char* message) {
-      const auto& [into, words] = *static_cast<std::array<std::string*, 2>*>(user);
-      if (words->empty()) *into += name, *words = message;
-    };
-    if (pellucidMakeMaterialTables(&materials[i], keep, &said) != PELLUCID_OK) throw InputError("frame", field, sentence);
+    std::string sentences;
+    if (pellucidMakeMaterialTables(&materials[i], &appendError, &sentences) != PELLUCID_OK)
+      throw InputError("", "materials[" + std::to_string(i) + "]", sentences);
   }
   return materials;
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "capture/capture.h"
-#include "common/frame_image.h"
 #include "replay/settings.h"
 
 namespace pellucid::harness {

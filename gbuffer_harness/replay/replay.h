@@ -74,7 +74,7 @@ public:
   // The slice as the device left it: with what it decided about indirect dispatches.
   const void* constants() const;
   const std::string& name() const { return name_; }  // of the capture
-  // Of the last recording, which is finished.
+  // The statistics of the last recording, which is finished.
   Statistics statistics() const { return readStatistics(*plan_, constants()); }
   // The words of that recording's blocks (compute/frame/blocks.glsl); none in plans without lists.
   std::vector<std::uint32_t> blockWords() const;

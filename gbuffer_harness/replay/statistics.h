@@ -1,4 +1,4 @@
-// What the device decided in a finished frame: workgroups that ran, and blocks with material.
+// The decisions of the device in a finished frame: workgroups that ran, and blocks with material.
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,7 @@ struct RhiItem {
 // A texture has one state. A buffer may have two at once, which Direct3D 12 does not allow.
 enum RhiState : uint32_t { kRhiSampled = 1, kRhiStored = 2, kRhiCommands = 4 };
 
-// What a plan needs of an RHI, on one command list. No barrier is automatic.
+// The calls of an RHI that a plan needs, on one command list. No barrier is automatic.
 class Rhi {
 public:
   virtual ~Rhi() = default;
@@ -140,30 +140,9 @@ private:
   }
 
   static RhiTexture texture(const PellucidFrame& frame, uint32_t resource) {
-    switch (resource) {
-      case PELLUCID_RESOURCE_FRONT_DEPTH:
-        return frame.frontDepth.view;
-      case PELLUCID_RESOURCE_BACK_DEPTH:
-        return frame.backDepth.view;
-      case PELLUCID_RESOURCE_IRRADIANCE:
-        return frame.irradiance.view;
-      case PELLUCID_RESOURCE_ALBEDO:
-        return frame.albedo.view;
-      case PELLUCID_RESOURCE_MATERIAL:
-        return frame.material.view;
-      case PELLUCID_RESOURCE_OUTPUT:
-        return frame.output.view;
-      case PELLUCID_RESOURCE_HISTORY:
-        return frame.options.history.view;
-      case PELLUCID_RESOURCE_HIDDEN_IRRADIANCE:
-        return frame.hiddenIrradiance.view;
-      case PELLUCID_RESOURCE_MOTION:
-        return frame.motion.view;
-    }
-    if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0].view;
-    const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
-    if (transient >= PELLUCID_MAX_TRANSIENTS) throw std::invalid_argument("a plan of a newer header");
-    return frame.transients[transient].view;
+    const PellucidImage* image = pellucidGetImage(&frame, resource);
+    if (!image) throw std::invalid_argument("the plan is of another frame");
+    return image->view;
   }
 
   static void require(PellucidResult result) {

@@ -398,8 +398,8 @@ std::optional<Worst> rects(Subject& s) {
   return worst;
 }
 
-// A context without some uses refuses the frame by the name of one, or gives its bits. Of eight sets a run, as each compiles the
-// shaders again.
+// A context without some uses refuses the frame by the name of one, or gives its bits. A run tries eight sets, because
+// each set compiles the shaders again.
 std::optional<Worst> uses(Subject& s) {
   constexpr const char* kNames[] = {"TRANSLUCENCY", "GATHER", "DIFFUSION", "REUSE", "DEBUG_VIEWS", "THIN_WALLS", "AMBIENT", "THESIS"};
   constexpr int kCount = static_cast<int>(std::size(kNames));

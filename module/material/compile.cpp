@@ -8,10 +8,10 @@
 #include "describe.h"
 #include "fit.h"
 #include "guarded.h"
+#include "material/transmittance.h"
 #include "pellucid/pellucid.h"
 #include "presets.h"
 #include "profile.h"
-#include "material/transmittance.h"
 
 namespace pellucid::material {
 namespace {

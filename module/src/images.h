@@ -61,15 +61,17 @@ inline Rect renderRect(const PellucidFrame& frame) {
 // Parts that cover a length, the last of them perhaps cut short.
 constexpr uint32_t parts(uint32_t length, uint32_t part) { return (length + part - 1) / part; }
 
-// The image of any image resource; a transient's and shadow image's by their index. Without a view for other numbers.
-inline const PellucidImage& imageOf(const PellucidFrame& frame, uint32_t resource) {
-  if (resource >= PELLUCID_RESOURCE_SHADOW0) return frame.shadowImages[resource - PELLUCID_RESOURCE_SHADOW0];
-  if (resource == PELLUCID_RESOURCE_HISTORY) return frame.options.history;
+// As pellucidGetImage has it.
+inline const PellucidImage* imageOf(const PellucidFrame& frame, uint32_t resource) {
+  if (resource >= PELLUCID_RESOURCE_SHADOW0) {
+    const uint32_t shadow = resource - PELLUCID_RESOURCE_SHADOW0;
+    return frame.shadowImages && shadow < frame.shadowImageCount ? &frame.shadowImages[shadow] : nullptr;
+  }
+  if (resource == PELLUCID_RESOURCE_HISTORY) return &frame.options.history;
   for (const ImageField& image : kImageFields)
-    if (image.resource == resource) return frame.*image.field;
-  static constexpr PellucidImage kNone{};
+    if (image.resource == resource) return &(frame.*image.field);
   const uint32_t transient = resource - PELLUCID_RESOURCE_TRANSIENT0;
-  return transient < PELLUCID_MAX_TRANSIENTS ? frame.transients[transient] : kNone;
+  return transient < PELLUCID_MAX_TRANSIENTS ? &frame.transients[transient] : nullptr;
 }
 
 }  // namespace pellucid

@@ -44,7 +44,7 @@ PellucidResult imageNeeds(const FrameFacts& f, uint32_t* count, PellucidImageNee
     ++made;
   };
   for (const MadeImage* image : transientImages()) add(*image, false);
-  if (f.stages.keepsHistory) add(historyImage(f), true);
+  for (const MadeImage* image : historyImages()) add(*image, true);
   *count = made;
   // With reuse there are frames of two kinds.
   for (const bool reused : {false, true}) {

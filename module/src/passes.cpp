@@ -115,7 +115,7 @@ constexpr bool diffuses(const FrameFacts& f) { return f.stages.diffusion; }
 constexpr MadeImage kLevel1{.texels = Texels::Packed, .made = &diffuses, .extent = [](const FrameFacts& f) {
                               return f.pyramid.images[imageOfLevel(kFirstLevel)];
                             }};
-// What the blocks hold, and lists of them.
+// Words about the content of each block, and lists of blocks.
 constexpr MadeImage kBlocks{.texels = Texels::Words, .made = &diffuses, .extent = [](const FrameFacts& f) {
                               // No rect has more blocks than the whole image.
                               const Blocks blocks(f.lights, {0, 0, f.lattice.extent.x, f.lattice.extent.y});
@@ -384,6 +384,7 @@ static_assert(std::size(kPasses) <= kMostPasses && fitSlots());
 constexpr const MadeImage* kTransients[] = {&kColors[0],     &kColors[1],    &kLevel1,  &kLevels2And3,
                                             &kCoarserLevels, &kFoundProbes, &kEntries, &kBlocks};
 static_assert(std::size(kTransients) <= PELLUCID_MAX_TRANSIENTS);
+constexpr const MadeImage* kHistories[] = {&kLightHistory, &kProbeHistory};
 
 // ---- A frame -----------------------------------------------------------------------------------------
 
@@ -477,6 +478,6 @@ bool addPasses(const FrameFacts& f, bool reused, PellucidPlan* plan) {
 
 std::span<const Pass* const> allPasses() { return kPasses; }
 std::span<const MadeImage* const> transientImages() { return kTransients; }
-const MadeImage& historyImage(const FrameFacts& f) { return f.stages.keepsProbes ? kProbeHistory : kLightHistory; }
+std::span<const MadeImage* const> historyImages() { return kHistories; }
 
 }  // namespace pellucid

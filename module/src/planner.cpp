@@ -148,12 +148,6 @@ Planner::Access Planner::accessOf(const Pass& pass, const PellucidDispatch& d, B
   return access;
 }
 
-// True for a dispatch that samples and stores one image. Stand-ins count: an API with one state an image refuses them, too.
-bool Planner::isInPlace(const PellucidDispatch& d) const {
-  const Access access = accessOf(*allPasses()[d.pipeline], d, 0);
-  return (access.reads & access.writes & ~kLists) != 0;
-}
-
 bool Planner::finish() {
   if (!fits_) return false;
   const uint32_t count = plan_.dispatchCount;
@@ -164,7 +158,11 @@ bool Planner::finish() {
   uint32_t commands = 0;
   for (uint32_t i = 0; i < count; ++i) {
     const PellucidDispatch& d = plan_.dispatches[i];
-    access[i] = accessOf(*allPasses()[d.pipeline], d, standIns_[i]);
+    const Pass& pass = *allPasses()[d.pipeline];
+    const Access bound = accessOf(pass, d, 0);
+    // An API with one state an image refuses stand-ins, too.
+    plan_.inPlaceDispatches += (bound.reads & bound.writes & ~kLists) != 0;
+    access[i] = standIns_[i] == 0 ? bound : accessOf(pass, d, standIns_[i]);
     for (uint32_t k = 0; k < i; ++k)
       if (access[i].conflicts(access[k])) wave[i] = std::max(wave[i], wave[k] + 1);
     if (commands == 0 && (access[i].writes & 1u << PELLUCID_RESOURCE_CONSTANTS) != 0) commands = wave[i] + 1;
@@ -182,7 +180,6 @@ bool Planner::finish() {
     // One barrier makes commands visible to all dispatches that follow; more would cost 2 us each.
     d.barrierIndirect = d.barrierBefore && facts.stages.lists && wave[i] == commands;
     plan_.barrierCount += d.barrierBefore;
-    plan_.inPlaceDispatches += isInPlace(d);
   }
   return true;
 }
@@ -246,6 +243,10 @@ BoundList boundBy(const PellucidPlan& plan, const PellucidDispatch& d) {
 }  // namespace pellucid
 
 using namespace pellucid;
+
+extern "C" const PellucidImage* pellucidGetImage(const PellucidFrame* frame, uint32_t resource) {
+  return frame ? imageOf(*frame, resource) : nullptr;
+}
 
 extern "C" uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch,
                                         PellucidBinding* bindings) {

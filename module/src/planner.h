@@ -26,8 +26,8 @@ struct MadeImage {
 
 // All transients, in the order of PellucidFrame::transients. A frame has those whose `made` is true.
 std::span<const MadeImage* const> transientImages();
-// Of a frame that keepsHistory.
-const MadeImage& historyImage(const FrameFacts& facts);
+// Images that options.history may hold; a frame keeps one at most.
+std::span<const MadeImage* const> historyImages();
 
 class Planner;
 
@@ -97,7 +97,6 @@ private:
   };
   void addShadowImages(PellucidDispatch& d, std::span<const uint32_t> images);
   Access accessOf(const Pass& pass, const PellucidDispatch& d, BindingSet unused) const;
-  bool isInPlace(const PellucidDispatch& d) const;
   uint32_t inputOf(uint32_t binding) const;
 
   PellucidPlan& plan_;

@@ -35,7 +35,7 @@ VkResult bind(const PellucidContext& c, VkCommandBuffer commandBuffer, const Pel
       buffers[i] = {slice.buffer, slice.offset + b.offset, b.size};
       writes[i].pBufferInfo = &buffers[i];
     } else {
-      const PellucidImage& image = imageOf(*view.frame, b.resource);
+      const PellucidImage& image = *imageOf(*view.frame, b.resource);  // checkViews found it
       images[i] = {VK_NULL_HANDLE, image.view, image.layout};
       writes[i].pImageInfo = &images[i];
     }

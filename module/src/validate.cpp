@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "domains.h"
-#include "planner.h"
 #include "material/tables.h"
+#include "planner.h"
 
 namespace pellucid {
 namespace {

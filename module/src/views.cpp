@@ -76,9 +76,7 @@ void checkBound(const PellucidContext& c, const PellucidPlan& plan, const Pelluc
             "has no view, but PellucidContextOptions::shadowViewType is 2D_ARRAY, and passes bind "
             "one such view even where no light has a map");
       if (resource == PELLUCID_RESOURCE_CONSTANTS) continue;
-      const bool isThere =
-          resource < kShadow0 || (frame.shadowImages && resource - kShadow0 < frame.shadowImageCount);
-      if (!isThere || !given(imageOf(frame, resource)))
+      if (const PellucidImage* image = imageOf(frame, resource); !image || !given(*image))
         return out.error(fieldOf(resource), "has no view, but the plan binds it");
     }
   if (stateOf(plan).separate && given(frame.output) && frame.output.view == frame.irradiance.view)
@@ -116,7 +114,7 @@ void checkImages(const PellucidView& view, const PellucidView& other, uint32_t o
     for (uint32_t b = 0; bound.all >> a & 1 && otherBound.all >> b != 0; ++b) {
       const bool written = (bound.written >> a | otherBound.written >> b) & 1;
       if (!(otherBound.all >> b & 1) || !written || (!meet && isOfScreen(a) && isOfScreen(b))) continue;
-      if (imageOf(*view.frame, a).view == imageOf(*other.frame, b).view)
+      if (imageOf(*view.frame, a)->view == imageOf(*other.frame, b)->view)
         return out.error(fieldOf(a), "is views[", otherIndex, "].", fieldOf(b),
                          ", too; what a view writes, no other view of the recording uses");
     }

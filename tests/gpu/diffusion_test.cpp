@@ -245,7 +245,7 @@ Capture textured(Capture c) {
   return c;
 }
 
-// What plans of orthographic cameras leave out is not missed: levels that no Gaussian reaches.
+// Plans of orthographic cameras leave out levels that no Gaussian reaches, and the image stays the same.
 TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   const Capture perspective = textured(perspectiveCapture(96));
   Capture orthographic = textured(flatCapture(96, 96));

@@ -1,4 +1,4 @@
-// What the material compiler says of a description that it refuses.
+// The sentence of the material compiler about a description that it refuses.
 #pragma once
 
 #include <gtest/gtest.h>

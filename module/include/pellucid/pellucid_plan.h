@@ -133,6 +133,9 @@ struct PellucidPlan {
  * number. 0: the plan has no such dispatch. */
 PELLUCID_API uint32_t pellucidGetBindings(const PellucidPlan* plan, uint32_t dispatch, PellucidBinding* bindings);
 
+/* The frame's image of a PellucidResource, with or without a view. NULL: the frame has no such image, or the resource is no image. */
+PELLUCID_API const PellucidImage* pellucidGetImage(const PellucidFrame* frame, uint32_t resource);
+
 /* Makes a pool for PellucidFrameOptions::descriptorPool, with room for the recording of any plan. The caller destroys the pool by
  * vkDestroyDescriptorPool with the context's options.allocator. On failure *pool is NULL, and the context's `message` gets a sentence.
  * Errors: INVALID_ARGUMENT, OUT_OF_MEMORY, VULKAN. */
