@@ -7,6 +7,7 @@
 #include <new>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 #include "capture/exr.h"
@@ -296,7 +297,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     failed.push_back(frame);
   }
   std::sort(failed.begin(), failed.end());
-  throw InputError("", "", "failed: --frames " + framesText(failed) + report);
+  throw std::runtime_error("failed: --frames " + framesText(failed) + report);  // of many sentences
 }
 
 void replay(const Options& options) {

@@ -37,7 +37,7 @@ bool accepts(const Read& read) {
     require(sentence.size() > sentence.find(": ") + 2, "there is a sentence: " + sentence);
     for (const char* end : {"bad_alloc", "more memory than there is"})
       require(!sentence.ends_with(end), "small files need little memory: " + sentence);
-    require(sentence.size() < 20000, "a person can read it");
+    require(sentence.size() < 9000, "a person can read it");
     return false;
   }
 }

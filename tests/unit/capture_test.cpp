@@ -1,11 +1,13 @@
 // Captures from and to disk: what is read is what was written, and what is wrong is named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 #include <tuple>
 
+#include "capture/json_field.h"
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
@@ -646,6 +648,25 @@ TEST_F(Manifests, WrongValuesAreNamed) {
       named.push_back(fieldOf(pointer));
     named.push_back((directory / "").string());
     expectNames(error(), named);
+  }
+}
+
+// Names and values of files may be as long as the files, and hold what a terminal obeys.
+TEST_F(Manifests, MessagesAreShortAndOfOneLine) {
+  const json good = manifest;
+  const std::string tangled = "\x1b[31m\n\u00e9" + std::string(30000, 'x') + "\u00e9";
+  for (const char* where : {"/buffers/irradiance/channels/0", "/buffers/frontDepth/file", "/lights/0/type"}) {
+    manifest = good;
+    manifest[json::json_pointer(where)] = tangled;
+    expectNames(error(), {(directory / "").string()});
+    EXPECT_LT(error().size(), 9000u) << where;
+  }
+  manifest = good;
+  manifest[tangled] = 1;
+  for (const std::string& sentence : {error(), refusalOf([] { parseJson("m.json", "[\"\x01" + std::string(30000, '\x01')); })}) {
+    EXPECT_LT(sentence.size(), 9000u);
+    EXPECT_TRUE(std::none_of(sentence.begin(), sentence.end(), [](unsigned char c) { return c < 0x20; })) << sentence;
+    EXPECT_NO_THROW(json(sentence).dump()) << "no character of UTF-8 is cut";
   }
 }
 
