@@ -1,4 +1,4 @@
-// Tests of the bench: errors of frames, comparisons of runs, and the command line.
+// Tests of the bench: errors of frames, and the command line.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,10 +12,8 @@
 
 #include "capture/material.h"
 #include "capture/write.h"
-#include "common/error.h"
 #include "frame_errors.h"
 #include "reference/reference.h"
-#include "results.h"
 #include "scene/scene.h"
 #include "sections.h"
 
@@ -24,56 +22,6 @@ namespace {
 
 using namespace harness;
 using Json = nlohmann::json;
-
-// ---- Runs
-
-Json row(const char* name, double us, double error) {
-  return {{"section", "frames"}, {"frame", "far"},      {"size", "64x36"},
-          {"kind", "whole"},     {"name", name},        {"us", us},
-          {"p10_us", 0.99 * us}, {"p90_us", 1.01 * us}, {"relative_rmse", error}};
-}
-
-Json run() {
-  return {{"device", "a"}, {"results", {row("Pellucid", 100, 0.01), row("HDRP, 20 samples", 50, 0.02)}}};
-}
-
-// How many rows grew, and the lines that say so.
-std::pair<int, std::string> grew(const Json& before, const Json& now) {
-  char* text = nullptr;
-  size_t size = 0;
-  std::FILE* file = open_memstream(&text, &size);
-  const int count = printWhatGrew(before, now, file);
-  std::fclose(file);
-  const std::string said(text, size);
-  std::free(text);
-  return {count, said};
-}
-
-TEST(CompareRuns, SlowerBeyondTheSpreadIsNamed) {
-  Json now = run();
-  EXPECT_EQ(grew(run(), now).first, 0);
-  now["results"][1] = row("HDRP, 20 samples", 55, 0.02);
-  const auto [count, said] = grew(run(), now);
-  EXPECT_EQ(count, 1);
-  EXPECT_NE(said.find("slower: frames: far: 64x36: whole: HDRP, 20 samples: 55.0 us"), std::string::npos)
-      << said;
-  Json before = run();
-  before["results"][1]["p90_us"] = 60;  // the median, 55, is a tenth above 50
-  EXPECT_EQ(grew(before, now).first, 0);
-}
-
-TEST(CompareRuns, ErrorsThatGrewAreNamedAndTimesOfTwoDevicesRefused) {
-  Json before = run(), now = run();
-  now["results"][0]["relative_rmse"] = 0.012;
-  now["device"] = "b";
-  EXPECT_THROW(grew(before, now), InputError);
-  for (Json* one : {&before, &now})
-    for (Json& r : (*one)["results"])
-      for (const char* time : {"us", "p10_us", "p90_us"}) r.erase(time);
-  const auto [count, said] = grew(before, now);
-  EXPECT_EQ(count, 1);
-  EXPECT_NE(said.find("worse: "), std::string::npos) << said;
-}
 
 // ---- Errors of frames
 
@@ -170,11 +118,10 @@ protected:
 };
 
 // Frames that are made come after captures where their names are given.
-TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
+TEST_F(Command, MeasuresACaptureAndNothing) {
   Capture capture = head(64, 36);
   capture.truth = Truth{capture.irradiance};
-  const std::string exr = folder / "face.exr", json = folder / "run.json",
-                    doctored = folder / "doctored.json";
+  const std::string exr = folder / "face.exr", json = folder / "run.json";
   writeCapture(capture, exr);
   writeCapture(capture, folder / "face.turned.exr");
   ASSERT_EQ(
@@ -184,7 +131,7 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
           json),
       0)
       << output();
-  Json run = Json::parse(std::ifstream(json));
+  const Json run = Json::parse(std::ifstream(json));
   int wholes = 0, dispatches = 0, diffusions = 0, nothing = 0;
   for (const Json& r : run["results"]) {
     if (r["frame"] == "nothing") {
@@ -214,21 +161,11 @@ TEST_F(Command, MeasuresACaptureAndNothingAndComparesRuns) {
   EXPECT_EQ(nothing, wholes);
   EXPECT_EQ(diffusions, 1 + 7);
   EXPECT_GT(dispatches, 3 * 5);
-
-  EXPECT_EQ(runs("--compare " + json + " --results " + json), 0) << output();
-  for (Json& r : run["results"])
-    for (const char* time : {"us", "p10_us", "p90_us"})
-      if (r.contains(time)) r[time] = r[time].get<double>() / 2;
-  std::ofstream(doctored) << run;
-  EXPECT_EQ(runs("--compare " + doctored + " --results " + json), 1);
-  EXPECT_NE(output().find("slower: frames: face"), std::string::npos) << output();
 }
 
 TEST_F(Command, BadInputIsNamed) {
   EXPECT_EQ(runs("--tables frames --frames " + (folder / "none.exr").string()), 3);
   EXPECT_NE(output().find("none.exr"), std::string::npos) << output();
-  EXPECT_EQ(runs("--compare " + (folder / "none.json").string() + " --results x"), 3);
-  EXPECT_NE(output().find("none.json: cannot be read"), std::string::npos) << output();
   EXPECT_NE(runs("--frame-sizes 64"), 0);
   EXPECT_NE(output().find("\"64\" is not WIDTHxHEIGHT"), std::string::npos) << output();
 }

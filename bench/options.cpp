@@ -57,9 +57,6 @@ int readOptions(int argc, char** argv, Options& options) {
       ->capture_default_str();
 
   app.add_option("--json", options.json, "file to write, - for standard output");
-  app.add_option("--compare", options.compare,
-                 "JSON of another run: says what is slower or worse now, and exits with 1 if something is");
-  app.add_option("--results", options.results, "JSON to compare in place of a run");
 
   app.add_flag("--create-context", options.createContext)->group("");
   app.add_option("--uses", options.uses)->group("");
@@ -67,8 +64,6 @@ int readOptions(int argc, char** argv, Options& options) {
   app.add_option("--save-cache", options.saveCache)->group("");
   try {
     app.parse(argc, argv);
-    if (!options.results.empty() && options.compare.empty())
-      throw CLI::RequiresError("--results", "--compare");
   } catch (const CLI::ParseError& e) {
     return app.exit(e);
   }

@@ -24,7 +24,6 @@ struct Options {
   std::optional<int> repeat;  // absent: 7, or 3 on a software device
   std::set<std::string> tables = {"frames", "context"};
   FrameOptions frames;
-  std::filesystem::path compare, results;
   // Options of the processes that the section context starts.
   bool createContext = false;
   std::uint32_t uses = 0;  // of that context; PellucidContextDesc::uses
