@@ -25,8 +25,8 @@ Capture Renderer::capture() {
   c.viewFromWorld = fromGlm(frame_.viewFromWorld);
   c.materials = scene_.model.materials;
   if (frame_.hasAmbient) c.environment = scene_.ambient;
-  c.frontDepth = {rectOf(depth_.download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
-  c.backDepth = {rectOf(backDepth_.download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
+  c.frontDepth = {rectOf(depth_->download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
+  c.backDepth = {rectOf(backDepth_->download(0, kDepthRead)), PELLUCID_DEPTH_DEVICE};
   c.irradiance = irradiance();
   for (float& value : c.irradiance.data) value /= frame_.preExposure;
   c.albedo = rgb(rectOf(targets_[kAlbedo]->download()));
@@ -37,12 +37,13 @@ Capture Renderer::capture() {
     for (std::uint32_t k = 0; k < frame_.lights[i].shadowMapCount; ++k) {
       const ShadowTile& t = frame_.tiles[frame_.lights[i].firstShadowMap + k];
       ShadowMap& map = light.shadowMaps.emplace_back();
-      const Image layer = shadows_[t.image].download(static_cast<int>(t.layer), kDepthRead);
+      const bool fronts = frame_.hasFronts && t.image == kAtlas;
+      const Image layer = shadows_[fronts ? kFronts : t.image].download(static_cast<int>(t.layer), kDepthRead);
       map.offset = {static_cast<int>(t.x), static_cast<int>(t.y)};
       const int size = static_cast<int>(t.size);
       map.depth = {cropped(layer, map.offset[0], map.offset[1], size, size), PELLUCID_DEPTH_DEVICE};
       map.clipFromWorld = fromGlm(t.clipFromWorld);
-      map.backFaces = t.frontsCulled;
+      map.backFaces = t.frontsCulled && !fronts;
       map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
       map.depthBiasSlope = static_cast<double>(t.biasSlope);
       map.depthStep = static_cast<double>(t.depthStep);

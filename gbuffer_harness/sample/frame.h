@@ -18,8 +18,9 @@ namespace pellucid::sample {
 using namespace pellucid::harness;
 
 constexpr std::uint32_t kFramesInFlight = 3, kMostMaterials = 255, kMostLights = 6, kMostTiles = 16,
-                        kShadowImages = 3;
-enum ShadowImage : std::uint32_t { kCascades, kAtlas, kCube };  // arrays of layers
+                        kShadowImages = 4;
+// Arrays of layers. kFronts has the tiles of kAtlas with front faces, for Pellucid alone: Frame::hasFronts.
+enum ShadowImage : std::uint32_t { kCascades, kAtlas, kCube, kFronts };
 
 // A square of one of the shadow images. Depths are reversed: 1 is near.
 struct ShadowTile {
@@ -52,6 +53,7 @@ struct Frame {
   std::array<PellucidImage, kShadowImages> shadows{};
   std::vector<PellucidLight> lights;
   std::vector<ShadowTile> tiles;
+  bool hasFronts = false;
   bool hasAmbient = false;
   std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
   std::uint32_t gatherSamples = 8;     // of Pellucid

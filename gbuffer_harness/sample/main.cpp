@@ -61,6 +61,7 @@ void addOptions(CLI::App& app, Options& o) {
                                        "of Pellucid: graphics (default), or compute, its own")
       ->check(CLI::IsMember({"graphics", "compute"}));
   app.add_flag("--cull-fronts", s.cullFronts, "the spots' shadow maps hold back faces");
+  app.add_flag("--fronts", s.fronts, "with --cull-fronts: further maps of front faces, which Pellucid reads");
   for (const Switch& option : kSwitches)
     app.add_flag(std::string("--") + option.name + ",!--no-" + option.name, s.*option.on, "on by default");
   std::map<std::string, Mistake> mistakes;
@@ -103,6 +104,11 @@ void run(Options o) {
     if (window) {
       window->events(false);
       handleKeys(window->handle(), o.settings, scene.camera);
+      int width = 0, height = 0;
+      window->size(width, height);
+      if (width > 0 && height > 0 && (width != o.width || height != o.height))
+        renderer.resize({static_cast<std::uint32_t>(o.width = width),
+                         static_cast<std::uint32_t>(o.height = height)});
     }
     orbit(scene.camera, o.turn * std::numbers::pi / 180, 0);
     fitRange(scene.camera, scene.bounds.center, scene.bounds.radius);

@@ -41,9 +41,10 @@ public:
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
     for (const ShadowTile& t : f.tiles) {
-      maps.push_back({t.image, {t.size, t.size}, PELLUCID_DEPTH_DEVICE});
+      const bool fronts = f.hasFronts && t.image == kAtlas;  // a second map of front faces, beside the engine's
+      maps.push_back({fronts ? kFronts : t.image, {t.size, t.size}, PELLUCID_DEPTH_DEVICE});
       put(t.clipFromWorld, maps.back().clipFromWorld);
-      maps.back().options = {.offset = {t.x, t.y}, .layer = t.layer, .backFaces = t.frontsCulled};
+      maps.back().options = {.offset = {t.x, t.y}, .layer = t.layer, .backFaces = t.frontsCulled && !fronts};
       maps.back().options.depthBiasConstant = t.biasConstant * t.depthStep;  // factors of vkCmdSetDepthBias
       maps.back().options.depthBiasSlope = t.biasSlope, maps.back().options.depthStep = t.depthStep;
     }

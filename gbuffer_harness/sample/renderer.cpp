@@ -74,11 +74,10 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       extent_(extent),
       mapTexels_(mapTexels),
       mesh_(device, scene.model),
-      depth_(device, extent, kDepth),
-      backDepth_(device, extent, kDepth),
       shadows_{{{device, {mapTexels, mapTexels}, kShadowDepth, kCascadeCount},
                 {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kShadowDepth, 1},
-                {device, {mapTexels, mapTexels}, kShadowDepth, kCubeFaces}}},
+                {device, {mapTexels, mapTexels}, kShadowDepth, kCubeFaces},
+                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kShadowDepth, 1}}},
       pool_(device),
       layout_(device, bindings(), {kStages, 0, sizeof(DrawConstants)}),
       lighting_(device),
@@ -88,33 +87,43 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       submissions_(device),
       uniforms_(device, kFramesInFlight * kUniformSlice, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       pellucid_(device, scene.materials) {
-  createPasses();
-}
-
-void Renderer::createPasses() {
-  for (std::size_t i = 0; i < kTargets; ++i)
-    targets_[i] =
-        std::make_unique<GpuImage>(device_, static_cast<int>(extent_.width), static_cast<int>(extent_.height),
-                                   kFormats[i], VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-  targets_[kHistory + 1]->clear();  // the first frame binds it, and no frame has drawn it
-  const auto pass = [&](VkExtent2D extent, const std::vector<int>& colors, VkImageView depth,
-                        VkFormat depthFormat) {
-    std::vector<Attachment> attachments;  // cleared to 0, which is far of reversed depths
-    for (const int i : colors)
-      attachments.push_back({targets_[i]->use().view, kFormats[i], {}, VK_IMAGE_LAYOUT_GENERAL});
-    return std::make_unique<DrawPass>(
-        device_, extent, attachments,
-        depth ? std::optional(Attachment{depth, depthFormat, {}, kDepthRead}) : std::nullopt);
-  };
-  gbufferPass_ = pass(extent_, {kNormal, kAlbedo, kSurface}, depth_.view(), kDepth);
-  backPass_ = pass(extent_, {}, backDepth_.view(), kDepth);
-  lightingPass_ = pass(extent_, {kIrradiance, kColor}, VK_NULL_HANDLE, kDepth);
-  for (int i = 0; i < 2; ++i)
-    resolvePasses_[i] = pass(extent_, {kHistory + i, kPicture}, VK_NULL_HANDLE, kDepth);
   for (std::size_t i = 0; i < kShadowImages; ++i)
     for (std::size_t layer = 0; layer < shadows_[i].layers(); ++layer)
       shadowPasses_[i].push_back(
-          pass(shadows_[i].extent(), {}, shadows_[i].layer(layer), shadows_[i].format()));
+          passTo(shadows_[i].extent(), {}, shadows_[i].layer(layer), shadows_[i].format()));
+  resize(extent);
+  createPipelines();
+}
+
+void Renderer::resize(VkExtent2D extent) {
+  vkDeviceWaitIdle(device_.handle());
+  extent_ = extent;
+  resized_ = next_;
+  for (std::size_t i = 0; i < kTargets; ++i)
+    targets_[i] =
+        std::make_unique<GpuImage>(device_, static_cast<int>(extent.width), static_cast<int>(extent.height),
+                                   kFormats[i], VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  targets_[kHistory + (next_ + 1) % 2]->clear();  // the next frame binds it, and no frame has drawn it
+  depth_.emplace(device_, extent, kDepth);
+  backDepth_.emplace(device_, extent, kDepth);
+  gbufferPass_ = passTo(extent, {kNormal, kAlbedo, kSurface}, depth_->view(), kDepth);
+  backPass_ = passTo(extent, {}, backDepth_->view(), kDepth);
+  lightingPass_ = passTo(extent, {kIrradiance, kColor}, VK_NULL_HANDLE, kDepth);
+  for (int i = 0; i < 2; ++i)
+    resolvePasses_[i] = passTo(extent, {kHistory + i, kPicture}, VK_NULL_HANDLE, kDepth);
+}
+
+std::unique_ptr<DrawPass> Renderer::passTo(VkExtent2D extent, const std::vector<int>& colors,
+                                           VkImageView depth, VkFormat depthFormat) const {
+  std::vector<Attachment> attachments;  // cleared to 0, which is far of reversed depths
+  for (const int i : colors)
+    attachments.push_back({targets_[i]->use().view, kFormats[i], {}, VK_IMAGE_LAYOUT_GENERAL});
+  return std::make_unique<DrawPass>(
+      device_, extent, attachments,
+      depth ? std::optional(Attachment{depth, depthFormat, {}, kDepthRead}) : std::nullopt);
+}
+
+void Renderer::createPipelines() {
   const Spirv screen{kSampleScreen, sizeof kSampleScreen};
   createPipeline(device_, *lightingPass_, layout_, screen, {kSampleLighting, sizeof kSampleLighting}, {},
                  lighting_);
@@ -174,11 +183,12 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   f.normal = targets_[kNormal]->use();
   f.albedo = targets_[kAlbedo]->use();
   f.surface = targets_[kSurface]->use();
-  f.depth = use(depth_);
-  f.backDepth = use(backDepth_);
+  f.depth = use(*depth_);
+  f.backDepth = use(*backDepth_);
   f.irradiance = targets_[kIrradiance]->use();
   f.color = targets_[kColor]->use();
   std::transform(shadows_.begin(), shadows_.end(), f.shadows.begin(), use);
+  f.hasFronts = settings_.cullFronts && settings_.fronts;
   f.hasAmbient = settings_.ambient;
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
   f.gatherSamples = settings_.gatherSamples;
@@ -236,7 +246,7 @@ void Renderer::writeUniforms(const ViewCamera& camera) const {
   u.eye = glm::vec4(toGlm(camera.eye()), 1);
   u.rect = {f.rect.width, f.rect.height, 1.0 / f.rect.width, 1.0 / f.rect.height};
   u.extent = {f.extent.width, f.extent.height, 1.0 / f.extent.width, 1.0 / f.extent.height};
-  u.jitter = {jitter_, settings_.taa && next_ > 0 ? 0.1 : 1, 0};
+  u.jitter = {jitter_, settings_.taa && next_ > resized_ ? 0.1 : 1, 0};
   u.scale = {settings_.exposure, f.preExposure, settings_.specular, 0};
   u.flags = {f.lights.size(), settings_.mistake, settings_.pellucid, 0};
   for (std::size_t i = 0; f.hasAmbient && i < f.ambient.size(); ++i) u.ambient[i] = {f.ambient[i], 0};
@@ -295,12 +305,13 @@ void Renderer::drawShadows(VkCommandBuffer commands) {
   vkCmdSetDepthBias(commands, -settings_.biasConstant, 0, -settings_.biasSlope);
   for (std::uint32_t image = 0; image < kShadowImages; ++image)
     for (std::uint32_t layer = 0; layer < shadowPasses_[image].size(); ++layer) {
+      if (image == kFronts && !frame_.hasFronts) continue;
       const DrawPass& pass = *shadowPasses_[image][layer];
       pass.begin(commands, {{0, 0}, shadows_[image].extent()});
       const VkCullModeFlags cull =
           image == kAtlas && settings_.cullFronts ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT;
       for (const ShadowTile& t : frame_.tiles) {
-        if (t.image != image || t.layer != layer) continue;
+        if (t.image != (image == kFronts ? kAtlas : image) || t.layer != layer) continue;
         setViewport(commands, {{static_cast<int>(t.x), static_cast<int>(t.y)}, {t.size, t.size}});
         drawScene(commands, pass, t.clipFromWorld, cull);
       }
@@ -322,7 +333,7 @@ void Renderer::light(VkCommandBuffer commands) const {
   std::vector<Bound> images;
   for (const PellucidImage& image : {frame_.normal, frame_.albedo, frame_.surface, frame_.depth})
     images.push_back({image, nearest()});
-  for (const PellucidImage& image : frame_.shadows) images.push_back({image, compare_});
+  for (std::uint32_t i = kCascades; i <= kCube; ++i) images.push_back({frame_.shadows[i], compare_});
   drawScreen(commands, *lightingPass_, frame_.rect, lighting_, images);
 }
 

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <tuple>
 
@@ -27,6 +28,7 @@ struct Settings {
   bool sun = true, spots = true, point = true, ambient = true, specular = true, taa = true;
   double scale = 1;                       // of the rendered rect to the picture along each side, (0, 1]
   bool cullFronts = false;                // of the spots' shadow maps
+  bool fronts = false;                    // with cullFronts: maps of front faces besides, for Pellucid
   float biasConstant = 4, biasSlope = 3;  // depth bias of all shadow maps, away from the light, >= 0
   float exposure = 1;
   Mistake mistake = Mistake::None;
@@ -37,6 +39,9 @@ public:
   // mapTexels: across a shadow map, as the scene's. The scene must outlive it.
   Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::uint32_t mapTexels);
   ~Renderer() { vkDeviceWaitIdle(device_.handle()); }
+
+  // Makes the images of the screen anew. Pellucid keeps nothing of the old size.
+  void resize(VkExtent2D extent);
 
   // Submits the next frame, once the frame kFramesInFlight before has finished.
   void draw(const Settings& settings, const ViewCamera& camera);
@@ -55,7 +60,9 @@ private:
     VkSampler sampler;
   };
 
-  void createPasses();
+  std::unique_ptr<DrawPass> passTo(VkExtent2D extent, const std::vector<int>& colors, VkImageView depth,
+                                   VkFormat depthFormat) const;
+  void createPipelines();
   void makeFrame(const ViewCamera& camera);
   void addLight(const SceneLight& light, const std::vector<LightView>& views);
   void writeUniforms(const ViewCamera& camera) const;
@@ -78,7 +85,7 @@ private:
   std::uint32_t mapTexels_;
   UploadedMesh mesh_;
   std::array<std::unique_ptr<GpuImage>, kTargets> targets_;
-  DepthBuffer depth_, backDepth_;
+  std::optional<DepthBuffer> depth_, backDepth_;
   std::array<DepthBuffer, kShadowImages> shadows_;
   ImagePool pool_;
   std::vector<std::shared_ptr<GpuImage>> transients_;  // of the last frame
@@ -94,7 +101,7 @@ private:
   Settings settings_;
   Frame frame_;                    // the last one
   std::vector<const Light*> lit_;  // its lights
-  std::uint64_t next_ = 0;
+  std::uint64_t next_ = 0, resized_ = 0;  // frames; resized_: the first of these images
   glm::dvec2 jitter_{0};                 // pixels of the rect
   glm::dmat4 previous_{1}, current_{1};  // clipFromWorld without jitter, of the frame before and of this one
 };

@@ -158,6 +158,19 @@ TEST_F(Sample, ARectIsAsAnImageOfItsSize) {
   EXPECT_LT(relativeRmse(rect, small.color()), 0.01);
 }
 
+// Images of a size before leave nothing behind, and the antialiasing begins anew.
+TEST_F(Sample, ResizedIsAsMadeInThatSize) {
+  Renderer small(device(), scene(), {kSide / 2, kSide / 2}, kMapTexels);
+  small.draw(still(), camera());
+  const Image color = small.color(), picture = small.picture().download();
+  Renderer resized(device(), scene(), {kSide, kSide / 4}, kMapTexels);
+  resized.draw(Settings(), camera());
+  resized.resize({kSide / 2, kSide / 2});
+  resized.draw(still(), camera());
+  EXPECT_TRUE(sameBits(resized.color(), color));
+  EXPECT_TRUE(sameBits(resized.picture().download(), picture));
+}
+
 // Still pictures become sharper; the mean stays.
 TEST_F(Sample, AntialiasingKeepsTheMean) {
   Settings settings;
@@ -190,6 +203,22 @@ protected:
     return settings;
   }
 };
+
+// Maps of front faces beside the engine's culled ones: its light stays, and Pellucid has the plain maps.
+TEST_F(SpotMaps, FrontsBesideCulledMapsGiveThePlainPicture) {
+  Settings settings = plain();
+  const Image truth = skin(settings), irradiance = renderer().irradiance();
+  settings.cullFronts = true;
+  const Image culled = skin(settings), culledIrradiance = renderer().irradiance();
+  settings.fronts = true;
+  const Image beside = skin(settings);
+  EXPECT_TRUE(sameBits(renderer().irradiance(), culledIrradiance));
+  // The engine's own shadows differ, which the irradiance has.
+  EXPECT_LT(relativeRmse(beside, truth), 0.01 + relativeRmse(culledIrradiance, irradiance));
+  EXPECT_LT(relativeRmse(beside, truth), 0.5 * relativeRmse(culled, truth));
+  for (const Light& light : renderer().capture().lights)
+    for (const ShadowMap& map : light.shadowMaps) EXPECT_FALSE(map.backFaces);
+}
 
 // Bounds are the differences of the first commit, rounded up. Culled fronts lack what gathered light adds: with a
 // gather they are darker. Relative RMSE of biased maps is of single pixels: the bias moves surfaces by texels.
