@@ -104,13 +104,18 @@ vec3 sanitize(vec3 v) { return positive(v, kInfinity); }
 // A color that no other pixel reads, or a computed one: infinity counts as the largest half.
 vec3 limited(vec3 v) { return positive(v, kInfinity + 1u); }
 
-// v rounded to the nearest half, ties up; v >= 0. Image stores may truncate (Vulkan leaves it open), which darkens by up
+// A change of a color: finite, of either sign.
+vec3 change(vec3 v) {
+  return mix(vec3(0.0), clamp(v, -kLargestHalf, kLargestHalf), lessThan(floatBitsToUint(v) & 0x7FFFFFFFu, uvec3(kInfinity)));
+}
+
+// v rounded to the nearest half, ties away from 0. Image stores may truncate (Vulkan leaves it open), which darkens by up
 // to 1e-3 a pass. Every device stores a half as it is.
 vec3 roundToHalf(vec3 v) {
   return uintBitsToFloat((floatBitsToUint(v) + 0x1000u) & 0xFFFFE000u); // halves keep 10 of 23 mantissa bits
 }
 
-// `color`: >= 0. Halves are rounded here, because image stores may truncate.
+// Halves are rounded here, because image stores may truncate.
 vec3 asStored(vec3 color) { return hasFlag(PELLUCID_FLAG_WIDE_OUTPUT) ? color : roundToHalf(color); }
 
 // True where the post-scatter albedo applies. `last`: this is the frame's final write.

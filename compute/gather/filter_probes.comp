@@ -46,10 +46,10 @@ ivec2 borderCell(int i) {
 
 // ---- The earlier frame
 
-layout(constant_id = PELLUCID_CONSTANT_ACCUMULATES) const bool kAccumulates = false;
+layout(constant_id = PELLUCID_CONSTANT_KEEPS_PROBES) const bool kKeeps = false;
 
-// False in the first frame.
-bool accumulates() { return kAccumulates && frame.motion.z > 0.0; }
+// False in the first frame, and with reuse that does not accumulate.
+bool accumulates() { return kKeeps && frame.motion.z > 0.0; }
 
 const float kOwnFrame = 0.1;      // part of the frame's own light: a mean over ten frames, whose noise falls to sqrt(.1 / 1.9)
 const float kSameFront = 0.02;    // of the distance, that a surface's may change in a frame: 1.2 m/s at 1 m and 60 frames a second
@@ -184,10 +184,10 @@ void clearCells(ivec2 first, int side) {
 void main() {
   int side = int(pass.spacing);
   ivec2 first;
-  // Frames that accumulate go over all blocks, as lists lack those without material.
-  uint word = kAccumulates ? gl_WorkGroupID.x : listedBlock(materialList());
+  // Frames that keep probes go over all blocks, as lists lack those without material.
+  uint word = kKeeps ? gl_WorkGroupID.x : listedBlock(materialList());
   if (materialPart(word, ivec2(side * PELLUCID_FILTER_GROUP), first))
     filterCells(first / side, side);
-  else if (kAccumulates)
+  else if (kKeeps)
     clearCells(first / side, side);
 }

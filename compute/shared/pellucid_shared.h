@@ -94,7 +94,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0
 #define PELLUCID_CONSTANT_LIGHT_TABLES 5
-#define PELLUCID_CONSTANT_ACCUMULATES 7
+#define PELLUCID_CONSTANT_KEEPS_PROBES 7
 #define PELLUCID_CONSTANT_USES 6 // PellucidUse bits that frames may ask of the pipeline, among them:
 #define PELLUCID_SHADER_USE_THIN_WALLS 32u
 #define PELLUCID_SHADER_USE_AMBIENT 64u
@@ -126,6 +126,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 // TranslucencyPass::write
 #define PELLUCID_WRITE_LAST 1u   // the frame's final write
 #define PELLUCID_WRITE_STARTS 2u // of a history, from 0
+#define PELLUCID_WRITE_KEEPS 3u  // of a history, on top of its content
 
 #define PELLUCID_GAUSSIANS 8
 #define PELLUCID_LIGHT_TABLES 16

@@ -12,6 +12,6 @@ void main() {
   ivec2 at = invocationPlace();
   if (!insideRect(inLattice(at)) || materialAt(at) == 0u) return;
   vec4 source = texelFetch(sourceImage, at, 0);
-  vec3 through = sanitize(texelFetch(historyImage, at, 0).rgb);
+  vec3 through = change(texelFetch(historyImage, at, 0).rgb);
   writeResult(at, sanitize(source.rgb) + through, source.a, pass.last != 0u);
 }

@@ -21,8 +21,8 @@ Surface surfaceAt(ivec2 at, float front, float stored, uint material) {
 }
 
 // Irradiance and the light that comes through, or what a debug view shows; alpha of the source. `value`: of the material image;
-// m: material; `starts`: see main.
-vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
+// m: material; `starts`, `keeps`: see main.
+vec4 resultAt(ivec2 at, uint value, uint m, bool starts, bool keeps) {
   vec3 arriving = vec3(0.0), visible = vec3(0.0), transmitted = vec3(0.0);
   vec3 thickness = vec3(-1.0);
   bool lets = pass.through == PELLUCID_LIGHT_ALL || (pass.through == PELLUCID_LIGHT_WALLS) == isThinWalled(m + 1u);
@@ -51,7 +51,8 @@ vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
   }
   // Read last: until here its registers let more waves run.
   vec4 source = starts ? vec4(0.0) : texelFetch(sourceImage, at, 0);
-  vec3 result = limited(sanitize(source.rgb) + transmitted * materials[m].inverseReflectance.rgb);
+  vec3 added = transmitted * materials[m].inverseReflectance.rgb;
+  vec3 result = keeps ? change(change(source.rgb) + added) : limited(sanitize(source.rgb) + added);
   if (kDebugViews) {
     // The divisors are positive where they are used; nothing arriving shows as 0.
     vec3 some = vec3(greaterThan(arriving, vec3(0.0)));
@@ -65,13 +66,16 @@ vec4 resultAt(ivec2 at, uint value, uint m, bool starts) {
 void main() {
   ivec2 at = invocationPlace();
   bool inside = insideRect(inLattice(at));
-  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there.
-  bool starts = pass.write == PELLUCID_WRITE_STARTS;
+  // A history that starts is 0 wherever nothing came through: the next frame's pixels may lie there. It keeps changes of the
+  // irradiance, which are negative where a thin body returns less light of the sky than comes through.
+  bool starts = pass.write == PELLUCID_WRITE_STARTS, keeps = starts || pass.write == PELLUCID_WRITE_KEEPS;
   uint value = inside ? materialValueAt(at) : 0u, material = materialIndex(value);
   if (material != 0u) {
-    vec4 result = resultAt(at, value, material - 1u, starts);
+    vec4 result = resultAt(at, value, material - 1u, starts, keeps);
     if (kDebugViews)
       imageStore(destinationImage, at, result);
+    else if (keeps)
+      imageStore(destinationImage, at, vec4(asStored(result.rgb), 0.0));
     else
       writeResult(at, result.rgb, result.a, pass.write == PELLUCID_WRITE_LAST);
   } else if (starts && inside) {

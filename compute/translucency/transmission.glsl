@@ -377,7 +377,8 @@ Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   Transmitted t = Transmitted(face.thickness, incident.irradiance * cosine, 1.0, byNormal ? face.opposite : 1.0, vec3(0.0));
   // Most pixels face some lights, whose maps need no reading.
   if (t.arriving * t.opposite == vec3(0.0) || (hidden && !mapped)) return t;
-  float farthest = hidden || wall ? kFarthest : materials[s.material - 1u].transmittance4.w / frame.camera.range.w;
+  // Below kFarthest, also of materials that light crosses at any thickness: clamped texels are then told apart.
+  float farthest = hidden || wall ? kFarthest : min(materials[s.material - 1u].transmittance4.w / frame.camera.range.w, kNoDepth);
   LightTexels l = lightTexels(light, incident, wall ? 0u : s.material, face.position, hidden ? 0.0 : facing, farthest);
   if (wall) {
     t.thickness = 0.0; // not by a choice of 0 or -1, which compilers make -0: isWithin refuses that

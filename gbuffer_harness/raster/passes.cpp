@@ -56,9 +56,9 @@ shared::LightConstants lightConstants(const Light& light, const glm::dmat4& view
   constants.position = glm::vec4(viewFromWorld * glm::dvec4(toGlm(light.position), 1));
   constants.position.w = static_cast<float>(light.range > 0 ? 1 / light.range : 0);
   constants.direction = glm::vec4(glm::normalize(glm::dmat3(viewFromWorld) * toGlm(light.direction)), 0);
-  // KHR_lights_punctual, "Inner and Outer Cone Angles"; 0.001 is its own guard.
+  // KHR_lights_punctual, "Inner and Outer Cone Angles". Its guard of .001 would darken spots of less than 2.6 degrees.
   const double outer = std::cos(light.outerConeAngle);
-  const double scale = 1 / std::max(0.001, std::cos(light.innerConeAngle) - outer);
+  const double scale = 1 / std::max(1e-6, std::cos(light.innerConeAngle) - outer);
   constants.cone = glm::vec4(scale, -outer * scale, 0, 0);
   return constants;
 }

@@ -53,7 +53,9 @@ GatherKernel::GatherKernel(const PellucidMaterial& material) : material_(materia
     }
     // In a slab T goes like 1 / sinh(kappa (d + e)), whose rate kappa coth(kappa (d + e)) at half depth
     // gives e; one exponential has none.
-    slowest_[i] = p[2] > 0 ? std::min(p[1], p[3]) : p[1];
+    slowest_[i] = INFINITY;
+    for (const int term : {0, 2})
+      if (p[term] > 0) slowest_[i] = std::min(slowest_[i], double(p[term + 1]));
     double low = 0, high = 100 / slowest_[i];
     for (int step = 0; step < 100; ++step) {
       const double middle = 0.5 * (low + high);

@@ -68,7 +68,7 @@ double rangeWindow(double distance, double range) {
 // Reference implementation in the text of KHR_lights_punctual.
 double coneFalloff(const Light& light, const glm::dvec3& toLight) {
   const double cosInner = std::cos(light.innerConeAngle), cosOuter = std::cos(light.outerConeAngle);
-  const double scale = 1 / std::max(0.001, cosInner - cosOuter);
+  const double scale = 1 / std::max(1e-6, cosInner - cosOuter);
   const double cosAngle = glm::dot(glm::normalize(toGlm(light.direction)), -toLight);
   const double t = std::clamp((cosAngle - cosOuter) * scale, 0.0, 1.0);
   return t * t;

@@ -310,19 +310,21 @@ std::array<std::uint32_t, 4> randomRect(Random& random, int width, int height) {
           static_cast<std::uint32_t>(height - y)};
 }
 
-// The second of two accumulated frames reads what the first one left, and no other bytes: those of a fresh history, or of a sequence
-// with another rect or without the anchor.
+// The second of two frames with reuse reads what the first one left, and no other bytes: those of a fresh history, or of a sequence
+// with another rect.
 std::optional<Worst> history(Subject& s) {
   const int width = s.frame.capture.width, height = s.frame.capture.height;
   if (!s.translucent() || width * height == 1) return {};
   Random random = s.random("history");
   StressFrame second = s.frame;
   second.settings.debugView = PELLUCID_DEBUG_NONE;
-  second.settings.reuse = PELLUCID_REUSE_ACCUMULATE;
+  second.settings.reuse = random.of({PELLUCID_REUSE_ACCUMULATE, PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE});
+  const bool accumulates = second.settings.reuse == PELLUCID_REUSE_ACCUMULATE;
+  if (!accumulates) second.settings.anchor = {};  // refused with these
   second.settings.renderRect = randomRect(random, width, height);
   // Most other options keep a frame from gathering.
   second.settings.translucency = {};
-  second.settings.translucency.gatherSamples = kDefaultGatherSamples;
+  second.settings.translucency.gatherSamples = accumulates || random.chance(0.6) ? kDefaultGatherSamples : 0;
   second.settings.translucency.gatherSpacing = s.frame.settings.translucency.gatherSpacing;
   Image& motion = second.capture.motion;
   motion = Image(width, height, 2);
@@ -598,8 +600,8 @@ std::span<const Check> checks() {
        "frames with dispatches", 0, 0, kBits, &badValues},
       {"reach", "a pixel's irradiance changes no bit beyond the diffusion's kernel",
        "frames larger than the kernel", 0, 0, kBits, &reach},
-      {"history", "the second of two accumulated frames reads what the first one left, and no other bytes of the history",
-       "frames that gather, with random motion and rect", 0, 0, kBits, &history},
+      {"history", "the second of two frames with reuse reads what the first one left, and no other bytes of the history",
+       "frames with light, with random reuse, motion and rect", 0, 0, kBits, &history},
       {"rects", "two parts take the images that the whole image needs, and have its bits where they share no edge",
        "frames without a debug view; bits: one thickness a pixel", 0, 0, kBits, &rects},
       {"uses", "a context that leaves out some PellucidUse refuses the frame by the name of one, or has its bits",

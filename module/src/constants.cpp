@@ -196,10 +196,10 @@ shared::LightConstants lightConstants(const FrameFacts& f, const PellucidLight& 
   if (l.distanceTable > 0) std::swap(c.position.w, c.direction.w);
   c.radiance.w = static_cast<float>(l.angleTable * (PELLUCID_LIGHT_TABLES + 1) + l.distanceTable);
   if (l.type == PELLUCID_LIGHT_SPOT) {
-    // KHR_lights_punctual, "Inner and Outer Cone Angles"; 0.001 is its own guard.
+    // KHR_lights_punctual, "Inner and Outer Cone Angles". Its guard of .001 would darken spots of less than 2.6 degrees.
     const double inner = std::cos(static_cast<double>(l.innerConeAngle));
     const double outer = std::cos(static_cast<double>(l.outerConeAngle));
-    const double scale = 1 / std::max(0.001, inner - outer);
+    const double scale = 1 / std::max(1e-6, inner - outer);
     c.cone.x = static_cast<float>(scale);
     c.cone.y = static_cast<float>(-outer * scale);
   }

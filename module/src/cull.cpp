@@ -59,7 +59,7 @@ ViewBounds::ViewBounds(const Setup& setup) : setup_(setup) {
   planes_[4] = {{0, 0, forward_}, 0};
 }
 
-// Every factor but -N.L needs the cosine between the view ray and the direction to the light to be above
+// Every factor but NORMAL's needs the cosine between the view ray and the direction to the light to be above
 // -minimumDot (0 for models without). Walking along a ray turns a light from ahead to behind, so for a
 // light at a point that cosine is largest where the ray starts.
 bool ViewBounds::angleStops(const PellucidLight& light) const {

@@ -40,7 +40,8 @@ uint32_t Blocks::listWords() const {
 Stages::Stages(const Setup& setup, const Lights& all, const Blocks& blocks) {
   const bool translucency = setup.translucency(), debug = setup.debug();
   diffusion = !debug && (setup.diffuses || all.gathered > 0);
-  if (translucency || debug) {
+  // Views of thickness and light show what translucency would have.
+  if (translucency || (debug && setup.frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE)) {
     gathered = all.gathered;
     fused = all.fused();
     walls = all.walls;

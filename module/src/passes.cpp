@@ -63,7 +63,10 @@ constexpr Pass kDebugViewPass{.pipeline = "debug_view",
 void addLights(Planner& p, const Pass& pass, const char* name, const LightGroup& group, uint32_t through,
                uint32_t source, uint32_t destination) {
   const bool starts = destination == PELLUCID_RESOURCE_HISTORY && group.firstLight == 0;
-  const uint32_t write = destination == PELLUCID_RESOURCE_OUTPUT ? PELLUCID_WRITE_LAST : starts ? PELLUCID_WRITE_STARTS : 0;
+  const uint32_t write = destination == PELLUCID_RESOURCE_OUTPUT    ? PELLUCID_WRITE_LAST
+                         : starts                                   ? PELLUCID_WRITE_STARTS
+                         : destination == PELLUCID_RESOURCE_HISTORY ? PELLUCID_WRITE_KEEPS
+                                                                    : 0;
   Step step = p.add(pass, name);
   step.tiles(PELLUCID_GROUP_X)
       .lights(group)
@@ -307,14 +310,15 @@ constexpr Pass kFilterProbesPass{.pipeline = "filter_probes",
                                                    PELLUCID_BINDING_BLOCKS),
                                  .writes = bindings(PELLUCID_BINDING_FILTERED_DESTINATION)};
 
-// This variant also averages probes with those of the earlier frame. Its registers would cost other frames 2 us.
-constexpr PellucidSpecialization kAccumulates[] = {{PELLUCID_CONSTANT_ACCUMULATES, 1}};
-constexpr Pass kAccumulateProbesPass{.pipeline = "accumulate_probes",
-                                     .words = kFilterProbes,
-                                     .uses = kGather,
-                                     .reads = kFilterProbesPass.reads,
-                                     .writes = kFilterProbesPass.writes,
-                                     .constants = kAccumulates};
+// This variant, of probes that are kept between frames, clears cells without material, and can average probes with those of the earlier
+// frame. Its registers would cost other frames 2 us.
+constexpr PellucidSpecialization kKeeps[] = {{PELLUCID_CONSTANT_KEEPS_PROBES, 1}};
+constexpr Pass kKeepProbesPass{.pipeline = "keep_probes",
+                               .words = kFilterProbes,
+                               .uses = kGather,
+                               .reads = kFilterProbesPass.reads,
+                               .writes = kFilterProbesPass.writes,
+                               .constants = kKeeps};
 
 // With reuse of the gather: kept between frames. With accumulation, the earlier frame's probes lie above or below this frame's.
 constexpr MadeImage kProbeHistory{.texels = Texels::Packed,
@@ -327,16 +331,16 @@ uint32_t filteredProbes(const Planner& p) {
   return p.facts.stages.keepsProbes ? static_cast<uint32_t>(PELLUCID_RESOURCE_HISTORY) : p.resource(kEntries);
 }
 
-// With accumulation, over all blocks: the next frame reads cells that lost their material, too.
+// Probes that are kept, over all blocks: the next frame may have its material in any cell.
 void addProbeFilter(Planner& p) {
-  const bool accumulates = p.facts.stages.accumulates;
+  const bool keeps = p.facts.stages.keepsProbes;
   const uint32_t perBlock = partsOfBlock(p.facts, PELLUCID_FILTER_GROUP);
-  Step step = p.add(accumulates ? kAccumulateProbesPass : kFilterProbesPass, "filter probes");
+  Step step = p.add(keeps ? kKeepProbesPass : kFilterProbesPass, "filter probes");
   step.image(PELLUCID_BINDING_FOUND_PROBES, kFoundProbes)
       .image(PELLUCID_BINDING_FILTERED_DESTINATION, filteredProbes(p))
       .image(PELLUCID_BINDING_BLOCKS, kBlocks)
       .push(shared::FilterProbesPass{p.facts.gatherSpacing});
-  if (accumulates)
+  if (keeps)
     step.groups(p.facts.blocks.count(), perBlock);
   else
     step.blocks(PELLUCID_LIST_FILTER, perBlock);
@@ -372,7 +376,7 @@ void addDiffuse(Planner& p, uint32_t source, uint32_t destination) {
 
 constexpr const Pass* kPasses[] = {
     &kTranslucencyPass, &kDebugViewPass, &kAddHistoryPass,  &kBaseLevelPass, &kDownsamplePass,   &kCoarseLevelsPass,
-    &kUpsamplePass,     &kDiffusePass,   &kEntryPointsPass, &kProbesPass,    &kFilterProbesPass, &kAccumulateProbesPass};
+    &kUpsamplePass,     &kDiffusePass,   &kEntryPointsPass, &kProbesPass,    &kFilterProbesPass, &kKeepProbesPass};
 constexpr bool fitSlots() {
   for (const Pass* pass : kPasses)
     if (slotOf(*pass, PELLUCID_BINDING_SHADOW_IMAGES) > PELLUCID_PLAN_SLOTS) return false;

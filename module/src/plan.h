@@ -43,6 +43,7 @@ struct History {
   uint32_t lightCount;               // above kCoherentLights, COHERENCE refreshes every frame
   float lightDots[kCoherentLights];  // camera axis and direction to the light, when written
   uint32_t gatherSpacing;            // of the probes that it holds; 0: it holds the light of pixels
+  uint32_t accumulates;              // 1: probes of two frames, by turns in its halves
   float preExposure;                 // of the light that it holds
   int32_t first[2];                  // of its probes: the image's first pixel
 };

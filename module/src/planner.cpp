@@ -53,7 +53,7 @@ Step& Step::lights(const LightGroup& group) {
   constants(PELLUCID_BINDING_ENTRY_MAPS, layout.entryMaps + group.entryMapBytes);
   if (!has(pass_.bindings(), PELLUCID_BINDING_SHADOW_IMAGES)) return *this;
   // The first image stands in where the group has none.
-  const bool some = f.frame.shadowImageCount > 0 && given(f.frame.shadowImages[0]);
+  const bool some = f.frame.shadowImageCount > 0;
   planner_.addShadowImages(d_, group.imageCount > 0 ? std::span(group.images.data(), group.imageCount)
                                                     : std::span(group.images.data(), some ? 1 : 0));
   return *this;
@@ -101,7 +101,8 @@ uint32_t Planner::resource(const MadeImage& image) const {
 // front depth stands in.
 uint32_t Planner::inputOf(uint32_t binding) const {
   for (const ImageField& image : kImageFields)
-    if (image.binding == binding && (image.required || given(facts.frame.*image.field)))
+    if (image.binding == binding && (image.required || given(facts.frame.*image.field) ||
+                                     (binding == PELLUCID_BINDING_MOTION && facts.stages.accumulates)))
       return image.resource;
   return PELLUCID_RESOURCE_FRONT_DEPTH;
 }

@@ -21,7 +21,7 @@ float cameraLightDot(const FrameFacts& f, const PellucidLight& light) {
 
 // The kept light is of the same pixels.
 bool fits(const History& kept, const History& now) {
-  return kept.valid != 0 && kept.format == now.format && kept.gatherSpacing == now.gatherSpacing &&
+  return kept.valid != 0 && kept.format == now.format && kept.gatherSpacing == now.gatherSpacing && kept.accumulates == now.accumulates &&
          std::equal(kept.extent, kept.extent + 2, now.extent) && kept.rect == now.rect;
 }
 
@@ -46,6 +46,7 @@ bool decideReuse(const FrameFacts& f, const History& kept, History* result) {
   now.valid = 1;
   now.format = f.stages.keepsProbes ? VK_FORMAT_R32G32B32A32_UINT : f.colorFormat;
   now.gatherSpacing = f.stages.keepsProbes ? f.gatherSpacing : 0;
+  now.accumulates = f.stages.accumulates;
   now.preExposure = f.frame.preExposure;
   // With an anchor the history is larger, and its rows lie elsewhere.
   now.extent[0] = f.lattice.extent.x, now.extent[1] = f.lattice.extent.y;

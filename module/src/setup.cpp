@@ -50,6 +50,21 @@ Lattice latticeOf(const PellucidFrame& f) {
   return lattice;
 }
 
+// Passes take planar distances above 0 for surfaces. The near plane of an orthographic camera may lie behind the eye: the eye then moves
+// behind that plane, in both matrices. View z is what it is, and has no surface behind the eye.
+void moveEyeBack(const PellucidFrame& f, const DepthRange& range, glm::dmat4& clipFromView, glm::dmat4& viewFromWorld) {
+  const bool front = f.options.frontDepthEncoding == PELLUCID_DEPTH_DEVICE,
+             back = !given(f.backDepth) || f.options.backDepthEncoding != PELLUCID_DEPTH_VIEW_Z;
+  if (range.perspective || !front || !back) return;
+  const double at0 = -(range.b / range.a), at1 = (range.d - range.b) / range.a;  // planar distances of depths 0 and 1
+  const double least = std::min(at0, at1), most = std::max(at0, at1);
+  if (least >= 0) return;
+  constexpr double kAhead = 1e-3;  // of the range: the near plane's own distance is above 0
+  const glm::dvec4 moved(0, 0, range.forward * (kAhead * (most - least) - least), 0);
+  clipFromView[3] -= clipFromView * moved;
+  viewFromWorld[3] += moved;
+}
+
 }  // namespace
 
 double deviationOf(const PellucidMaterial& m) {
@@ -71,6 +86,8 @@ Setup::Setup(const Inputs& inputs)
       viewFromWorld(toMatrix(frame.viewFromWorld)),
       pyramid(lattice.extent, rect) {
   const glm::uvec2 extent(frame.imageExtent[0], frame.imageExtent[1]);
+  readDepthRange(clipFromView, &depthRange);
+  moveEyeBack(frame, depthRange, clipFromView, viewFromWorld);
   readDepthRange(clipFromView, &depthRange);
   camera = makeCamera(clipFromView, depthRange, extent, frame.metersPerUnit, lattice.first);
 

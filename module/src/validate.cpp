@@ -168,6 +168,7 @@ void checkViews(const FrameFacts& facts, Findings& out) {
   }
   if (f.options.addToOutput == 1 && facts.inPlace())
     out.error("options.addToOutput", "is 1, but the output is the irradiance's view");
+  if (facts.inPlace() && canBeRead(f.irradiance.layout)) checkGeneral(f.irradiance, "irradiance", out);
   checkGeneral(f.output, "output", out);
 }
 

@@ -108,8 +108,8 @@ void checkLight(const Setup& setup, uint32_t index, Findings& out) {
       const double size = 1 + std::abs(l.position[0]) + std::abs(l.position[1]) + std::abs(l.position[2]);
       // 1e-4 of the light's distance from the origin: float matrices, not a different center.
       if (std::abs(atLight.w) > 1e-4 * scale * size)
-        out.error(field("position"), "is not the center of its shadow map's projection; clip w there is ",
-                  atLight.w);
+        out.error(field("position"), "is not the center of its shadow map's projection; clip w there is ", atLight.w,
+                  ". clipFromWorld is column-major");
     }
   }
   if (!fits)

@@ -120,6 +120,26 @@ void checkImages(const PellucidView& view, const PellucidView& other, uint32_t o
     }
 }
 
+// Calls each(i, resource) for shadowImages[i] of one frame that the other view writes as `resource`.
+template <class Each>
+void forWrittenMaps(const PellucidFrame& frame, const PellucidView& writer, Each&& each) {
+  const uint32_t written = BoundImages(*writer.plan).written;
+  for (uint32_t i = 0; i < frame.shadowImageCount; ++i)
+    for (uint32_t b = 0; given(frame.shadowImages[i]) && written >> b != 0; ++b)
+      if ((written >> b & 1) != 0 && imageOf(*writer.frame, b)->view == frame.shadowImages[i].view) each(i, b);
+}
+
+// Refuses shadow images of one view that the other writes.
+void checkShadowImages(const PellucidView& view, const PellucidView& other, uint32_t otherIndex, Findings& out) {
+  constexpr const char* kWhy = ", too; what a view writes, no other view of the recording uses";
+  forWrittenMaps(*view.frame, other, [&](uint32_t i, uint32_t resource) {
+    out.error(Field("shadowImages[", i, "]"), "is views[", otherIndex, "].", fieldOf(resource), kWhy);
+  });
+  forWrittenMaps(*other.frame, view, [&](uint32_t i, uint32_t resource) {
+    out.error(fieldOf(resource), "is views[", otherIndex, "].shadowImages[", i, "]", kWhy);
+  });
+}
+
 bool overlap(uint64_t a, uint64_t aSize, uint64_t b, uint64_t bSize) {
   return a < b + bSize && b < a + aSize;
 }
@@ -155,6 +175,7 @@ void checkView(const PellucidContext& c, std::span<const PellucidView> views, ui
              "; the plan needs ", view.plan->constantsSize);
   for (uint32_t other = 0; other < index && out.ok(); ++other) {
     checkImages(view, views[other], other, out);
+    checkShadowImages(view, views[other], other, out);
     checkSlices(view, views[other], other, out);
     if (c.desc.options.descriptorPools && views[other].frame->options.descriptorPool == view.frame->options.descriptorPool)
       out.error("options.descriptorPool", "is views[", other, "].options.descriptorPool, too");

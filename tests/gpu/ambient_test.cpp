@@ -58,6 +58,22 @@ TEST_F(AmbientLight, SlabSendsOnWhatComesFromBehind) {
     }
 }
 
+// Light that is kept may be less than nothing: a slab under a sky in front alone returns less than a thick body.
+TEST_F(AmbientLight, KeptLightIsTheSame) {
+  Capture c = flatCapture(16, 12);
+  c.environment = alongZ(0, 0.05);
+  const ReplaySettings s = through();
+  const Image expected = replay(c, testMaterial(), s);
+  EXPECT_LT(expected.at(8, 6)[0], 0.999f * c.irradiance.at(8, 6)[0]);
+  for (const PellucidReuse kind : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE}) {
+    ReplaySettings reused = s;
+    reused.reuse = kind;
+    Sequence sequence;
+    for (int frame = 0; frame < 2; ++frame)
+      EXPECT_LT(relativeRmse(sequence.run(c, testMaterial(), reused), expected), 1e-6) << kind << " frame " << frame;
+  }
+}
+
 TEST_F(AmbientLight, NoEnvironmentAndNoBackDepthAddNothing) {
   Capture c = flatCapture(16, 12);
   const Image none = replay(c, testMaterial(), through());

@@ -245,6 +245,17 @@ Capture textured(Capture c) {
   return c;
 }
 
+// The view shows the input of the diffusion: without translucency, no light comes through.
+TEST_F(Diffusion, ViewOfItsInputIsTheIrradiance) {
+  Capture c = textured(flatCapture(48, 48));
+  c.lights = {backLight()};
+  ReplaySettings s = diffusionOnly();
+  s.debugView = PELLUCID_DEBUG_IRRADIANCE;
+  EXPECT_LT(relativeRmse(replay(c, testMaterial(), s), c.irradiance), 1e-3);
+  s.features |= PELLUCID_FEATURE_TRANSLUCENCY;
+  EXPECT_GT(relativeRmse(replay(c, testMaterial(), s), c.irradiance), 0.1);
+}
+
 // Plans of orthographic cameras leave out levels that no Gaussian reaches, and the image stays the same.
 TEST_F(Diffusion, SmallRadiiAreTheSameWithFewerLevels) {
   const Capture perspective = textured(perspectiveCapture(96));

@@ -201,6 +201,24 @@ TEST_F(Gather, ClampedDepthsLetNoLightThrough) {
       }
 }
 
+// Also in a material that is never opaque: its T(d) falls by half over meters.
+TEST_F(Gather, ClampedDepthsLetNoLightThroughClearMaterials) {
+  PellucidMaterial clear = testMaterial();
+  for (auto& t : clear.transmittance) t[0] = 1, t[1] = 1e-4f, t[2] = 0;
+  const auto lit = [&](float depth) {
+    Capture c = flatCapture(32, 32, 4);
+    c.lights = {backLight()};
+    ShadowMap map = flatShadowMap(-11, PELLUCID_DEPTH_DEVICE);
+    map.clipFromWorld[14] = 0.11;
+    std::fill(map.depth.image.data.begin(), map.depth.image.data.end(), depth);
+    c.lights[0].shadowMaps = {map};
+    return replay(c, clear, gathering(0));
+  };
+  const Image nothing = lit(1);
+  EXPECT_LT(relativeRmse(lit(0), nothing), 1e-3);
+  EXPECT_GT(lit(0.001f).at(16, 16)[0], 1.5f * nothing.at(16, 16)[0]);
+}
+
 // Alpha-hashed hair in front of a slab lit from behind, as opaque texels in all encodings: light is what the free texels let by.
 TEST_F(Gather, SingleTexelsOfHairArePartialShadow) {
   constexpr int kTexels = 256;

@@ -91,6 +91,26 @@ Face faceOf(const glm::dvec3& x) {
   return {2 * axis + (d[axis] < 0), second / a[axis]};
 }
 
+// A spot of a degree is as bright on its axis as a wide one. The guard of KHR_lights_punctual made it a fifth as bright.
+TEST_F(PointLights, NarrowSpotsAreFullOnTheirAxis) {
+  const auto lit = [](double outer) {
+    Capture c = flatCapture(33, 33, 2);
+    Light spot = backLight();
+    spot.type = PELLUCID_LIGHT_SPOT;
+    spot.position = {0, 0, -212};
+    spot.intensity = 3 * 200 * 200;
+    spot.outerConeAngle = outer;
+    spot.innerConeAngle = 0.75 * outer;
+    c.lights = {spot};
+    ReplaySettings s = gathering(0);
+    s.features = PELLUCID_FEATURE_TRANSLUCENCY;
+    return replay(c, testMaterial(), s);
+  };
+  const Image wide = lit(0.5), narrow = lit(0.02);
+  EXPECT_GT(wide.at(16, 16)[0], 1.5f);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(narrow.at(16, 16)[k], wide.at(16, 16)[k], 2e-3f * wide.at(16, 16)[k]);
+}
+
 // The wall along each light ray is what geometry says, on every face and across their seams.
 TEST_F(PointLights, ThicknessOfAShellAroundTheLight) {
   const Model model = shell();

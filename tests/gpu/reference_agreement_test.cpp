@@ -232,6 +232,27 @@ const Option kOptions[] = {
     {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
 };
 
+// The eye of an orthographic camera may stand anywhere along its rays, also behind what it shows.
+TEST_F(GpuTest, OrthographicEyesMayStandBehindSurfaces) {
+  for (const std::uint32_t samples : {0u, 8u}) {
+    Capture c = flatCapture(64, 64, 4);
+    for (DepthImage* depth : {&c.frontDepth, &c.backDepth}) {
+      depth->encoding = PELLUCID_DEPTH_DEVICE;
+      for (float& v : depth->image.data) v /= 100;
+    }
+    c.lights = {backLight()};
+    c.lights[0].shadowMaps = {flatShadowMap(-14, PELLUCID_DEPTH_VIEW_Z)};
+    const Image expected = replay(c, testMaterial(), gathering(samples));
+    for (const double behind : {-5.0, 12.0, 40.0}) {  // mm; surfaces lie from 10 to 14 mm
+      Capture moved = c;
+      moved.viewFromWorld[14] += behind;
+      moved.clipFromView[14] += behind / 100;
+      EXPECT_LT(relativeRmse(replay(moved, testMaterial(), gathering(samples)), expected), 1e-4)
+          << samples << " samples, " << behind << " mm";
+    }
+  }
+}
+
 // A body diffuses as far under a sheared camera, whose rays meet the image at an angle, as under a straight
 // one along the same rays.
 TEST_F(GpuTest, ShearedCamerasDiffuseAsStraightOnes) {

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "material/pyramid_energy.h"
+#include "material/tables.h"
 
 namespace pellucid {
 namespace {
@@ -88,6 +90,21 @@ TEST(PyramidEnergy, CoarserLevelsBeginWhereStated) {
   for (double x = coarser.first; x <= kCoarserBegins; x += EnergyFrom::kStep)
     EXPECT_LE(at(coarser, x), 1e-3) << x;
   EXPECT_GT(at(coarser, kCoarserBegins + 2 * EnergyFrom::kStep), 1e-3);
+}
+
+// T(d) is a sum: the order of its exponentials changes nothing, and one of amplitude 0 is none.
+TEST(MaterialTables, AreThoseOfTheTermsThatThereAre) {
+  PellucidMaterial first{}, second{};
+  for (PellucidMaterial* m : {&first, &second}) m->transmittanceModel = PELLUCID_TRANSMITTANCE_EXP2;
+  for (int c = 0; c < 3; ++c) {
+    const float one[5] = {0.5f, 1, 0, 0, 0}, other[5] = {0, 0, 0.5f, 1, 0};
+    std::copy_n(one, 5, first.transmittance[c]);
+    std::copy_n(other, 5, second.transmittance[c]);
+    first.reflectance[c] = second.reflectance[c] = 0.4f;
+  }
+  const shared::GatherConstants a = gatherConstants(first), b = gatherConstants(second);
+  EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
+  EXPECT_EQ(a.lengths.z, 2.0f) << "two diffusion lengths, mm";
 }
 
 }  // namespace

@@ -161,6 +161,33 @@ TEST(Reuse, AccumulationNeverReuses) {
   EXPECT_EQ(s.last.historyAge, 0u);
 }
 
+// Rows of probes lie elsewhere in the history of the other kind, which then has another size.
+TEST(Reuse, ChangesBetweenAccumulationAndReuseBeginAnew) {
+  for (const auto other : {PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_COHERENCE})
+    for (const bool toAccumulation : {false, true}) {
+      Sequence s(toAccumulation ? other : PELLUCID_REUSE_ACCUMULATE);
+      s.frame.options.gatherSamples = 8;
+      s.frame.motion = Frame::view();
+      for (int i = 0; i < 3; ++i) s.refreshes();
+      s.frame.options.reuse = toAccumulation ? PELLUCID_REUSE_ACCUMULATE : other;
+      EXPECT_TRUE(s.refreshes());
+      EXPECT_EQ(s.last.historyAge, 0u);
+    }
+}
+
+// Views may come after the plan, and recording then asks for them.
+TEST(Reuse, AccumulationBindsMotionThatHasNoViewYet) {
+  Sequence s(PELLUCID_REUSE_ACCUMULATE);
+  s.frame.options.gatherSamples = 8;
+  s.frame.motion = {};
+  s.refreshes();
+  int bound = 0;
+  for (uint32_t i = 0; i < s.last.dispatchCount; ++i)
+    for (const PellucidBinding& b : pellucid::test::bindingsOf(s.last, s.last.dispatches[i]))
+      bound += b.resource == PELLUCID_RESOURCE_MOTION;
+  EXPECT_EQ(bound, 1);
+}
+
 // Without a gather there is nothing to average, and the plan says so.
 TEST(Reuse, AccumulationNeedsAGather) {
   Sequence s(PELLUCID_REUSE_ACCUMULATE);

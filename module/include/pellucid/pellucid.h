@@ -160,7 +160,8 @@ enum { PELLUCID_MAX_TRANSIENTS = 8 };
 
 /* Input and output of one recording. */
 typedef struct PellucidFrame {
-  /* Width and height in pixels of every screen-sized image, 1..65536. Frames that diffuse touch at most 65535 blocks of 64 x 64 pixels. */
+  /* Width and height in pixels of every screen-sized image, 1..65536. In frames that
+   * diffuse, the rect with 8 pixels around touches at most 65535 blocks of 64 x 64 pixels. */
   uint32_t imageExtent[2];
   /* Meters of a scene unit, 1e-9..1e9; default 1. */
   float metersPerUnit;
@@ -196,8 +197,8 @@ typedef struct PellucidFrame {
   PellucidImage motion;
   /* Required; a storage image, which may be `irradiance`. It gets E after scattering, times preExposure and albedo, in place of a diffuse
    * term. Results are 0..65504. Alpha is copied from `irradiance`. Pixels of material 0 are not written. If `output` and
-   * `irradiance` have one view, they are one image. If they have two views, the views share no memory. Without a view, the output counts as the
-   * irradiance image. plan.inPlaceDispatches says whether a dispatch samples and stores one image. */
+   * `irradiance` have one view, they are one image in layout GENERAL. If they have two views, the views share no memory. Without a view,
+   * the output counts as the irradiance image. plan.inPlaceDispatches says whether a dispatch samples and stores one image. */
   PellucidImage output;
   /* The scratch images that pellucidGetImageNeeds lists, in its order, in layout GENERAL. */
   PellucidImage transients[PELLUCID_MAX_TRANSIENTS];
@@ -263,7 +264,8 @@ typedef struct PellucidPlan PellucidPlan;
  * `plan` may be one object. On failure the plan is empty. Errors: INVALID_ARGUMENT; CAPACITY for more dispatches than a plan holds. */
 PELLUCID_API PellucidResult pellucidBuildPlan(const PellucidFrame* frame, const PellucidPlan* previous, PellucidPlan* plan);
 
-/* The most bytes that a slice needs for these numbers of materials, lights and shadow maps. A map of two lights counts twice. */
+/* The most bytes that a slice needs for these numbers of materials, lights and shadow maps, a multiple of 256. A map of two lights counts
+ * twice. */
 PELLUCID_API VkDeviceSize pellucidGetConstantsSize(uint32_t materialCount, uint32_t lightCount, uint32_t shadowMapCount);
 
 /* The constants of one recording: host-visible, host-coherent memory, device-local if such memory exists. The device also writes into
@@ -282,7 +284,7 @@ typedef struct PellucidConstantsSlice {
 
 /* Writes the constants of a plan into `size` bytes at `mapped`. The plan was made from this frame. Views may be null if they were null for
  * the plan. Errors: INVALID_ARGUMENT for a null pointer, a frame that pellucidBuildPlan refuses, or a plan of another frame;
- * BUFFER_TOO_SMALL. */
+ * BUFFER_TOO_SMALL, if `size` is below plan->constantsSize. */
 PELLUCID_API PellucidResult pellucidWriteConstants(const PellucidPlan* plan, const PellucidFrame* frame, void* mapped, size_t size);
 
 /* Stages and accesses of the barriers around a recording. Any queue family with COMPUTE may run a recording. */

@@ -91,7 +91,7 @@ typedef enum PellucidReuse {
 typedef enum PellucidDebugView {
   /* The result. */
   PELLUCID_DEBUG_NONE = 0,
-  /* Thickness in mm; -1: none. R: camera-space thickness. G: light-space thickness of the first light whose map contains the pixel. B:
+  /* Thickness in mm; -1: none, which B10G11R11_UFLOAT_PACK32 stores as 0. R: camera-space thickness. G: light-space thickness of the first light whose map contains the pixel. B:
    * thickness of the first light that contributes. */
   PELLUCID_DEBUG_THICKNESS = 1,
   /* Light that comes through, divided by the light that arrives at hidden faces, both summed over lights; 0: no light arrives. */
@@ -188,7 +188,8 @@ typedef struct PellucidFrameOptions {
    * if this quotient is above 1. */
   float coherenceThreshold;
   /* Required by reuse: the persistent image of pellucidGetImageNeeds, in layout GENERAL, the same image in all frames. Any content at
-   * first: frames without a previous plan, and after another size, rect or anchor.w, read nothing of it. */
+   * first: frames without a previous plan, and after another size, rect, anchor.w or change between ACCUMULATE and other reuse, read
+   * nothing of it. */
   PellucidImage history;
   /* PellucidDebugView; default NONE. */
   uint32_t debugView;

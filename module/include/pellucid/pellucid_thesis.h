@@ -13,7 +13,9 @@ extern "C" {
 /* Models of the cosine of the light on the hidden face, without a gather. x is the cosine between the view ray and the
  * direction to the light: 1 if the light is straight behind. Every factor is clamped to 0..1. */
 typedef enum PellucidAngleModel {
-  /* -N.L, as if the hidden face had the normal -N. N, of the visible face, follows from the front depths of the pixel and its neighbors. */
+  /* N'.L, where N' is the outward normal of the hidden face. With camera-space thickness, N' follows from back depths, or is -N where they
+   * show no face. With light-space thickness, thin walls and backDepthEncoding THICKNESS, N' is -N. N, of the visible face, follows from
+   * front depths. */
   PELLUCID_ANGLE_NORMAL = 0,
   /* x (Whelan 2009, 4.2). */
   PELLUCID_ANGLE_COSINE = 1,

@@ -34,7 +34,7 @@ typedef struct PellucidView {
  * Errors are those of pellucidRecordPlan. An image view that two views share against these rules is an
  * INVALID_ARGUMENT. Slices that overlap in one buffer or in mapped addresses are one, too. The function compares
  * handles, and does not notice two image views of one image, or memory that aliases. The message's field names the view: "views[1].output".
- * After an error nothing is recorded. */
+ * After an error nothing is recorded, but for OUT_OF_MEMORY and VULKAN: reset the command buffer then. */
 PELLUCID_API PellucidResult pellucidRecordViews(const PellucidContext* context, VkCommandBuffer commandBuffer,
                                                 uint32_t viewCount, const PellucidView* views);
 

@@ -34,7 +34,8 @@ Channel channelOf(const PellucidMaterial& m, int index) {
   const auto p = [&](int i) { return static_cast<double>(m.transmittance[index][i]); };
   const bool exp2 = m.transmittanceModel == PELLUCID_TRANSMITTANCE_EXP2;
   // A floor of 1/km keeps media without absorption finite.
-  c.slowest = std::max(exp2 && p(2) > 0 ? std::min(p(1), p(3)) : p(1), 1e-6);
+  const double slow = !exp2 || !(p(2) > 0) ? p(1) : p(0) > 0 ? std::min(p(1), p(3)) : p(3);  // of terms that there are
+  c.slowest = std::max(slow, 1e-6);
   if (!exp2) {
     c.extrapolation = p(2) / c.slowest;
     return c;
