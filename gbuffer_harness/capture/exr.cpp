@@ -255,36 +255,51 @@ std::vector<std::string> ExrFile::unusedAttributes(int part) const {
   return harness::unusedAttributes(impl_->file->header(part));
 }
 
-std::optional<std::array<double, 16>> ExrFile::findMatrix(const std::string& attribute) const {
-  // OpenEXR multiplies row vectors from the left: its rows are the columns.
-  const auto columns = [](const auto& matrix) {
-    std::array<double, 16> result;
-    for (int i = 0; i < 16; ++i)
-      result[static_cast<std::size_t>(i)] = static_cast<double>(matrix[i / 4][i % 4]);
-    return result;
-  };
-  for (int part = 0; part < partCount(); ++part) {
-    const Imf::Header& header = impl_->file->header(part);
-    if (const auto* found = header.findTypedAttribute<Imf::M44fAttribute>(attribute))
-      return columns(found->value());
-    if (const auto* found = header.findTypedAttribute<Imf::M44dAttribute>(attribute))
-      return columns(found->value());
-  }
-  return std::nullopt;
+std::array<int, 2> ExrFile::dataOrigin(int part) const {
+  const Imath::Box2i box = impl_->box(part, ExrWindow::Data);
+  return {box.min.x, box.min.y};
 }
 
-std::optional<double> ExrFile::findNumber(const std::string& attribute) const {
-  for (int part = 0; part < partCount(); ++part)
-    if (const auto* found = impl_->file->header(part).findTypedAttribute<Imf::FloatAttribute>(attribute))
-      return static_cast<double>(found->value());
-  return std::nullopt;
+namespace {
+
+// The attribute of the part `first`, or of the first other part that has it. get(header, attribute): an optional.
+template <class Get>
+auto findIn(const Imf::MultiPartInputFile& file, const std::string& attribute, int first, const Get& get) {
+  auto found = get(file.header(first), attribute);
+  for (int part = 0; part < file.parts() && !found; ++part) found = get(file.header(part), attribute);
+  return found;
 }
 
-std::optional<std::array<double, 2>> ExrFile::findPair(const std::string& attribute) const {
-  for (int part = 0; part < partCount(); ++part)
-    if (const auto* found = impl_->file->header(part).findTypedAttribute<Imf::V2fAttribute>(attribute))
-      return std::array<double, 2>{double(found->value().x), double(found->value().y)};
-  return std::nullopt;
+// OpenEXR multiplies row vectors from the left: its rows are the columns.
+template <class M>
+std::optional<std::array<double, 16>> columnsOf(const M* matrix) {
+  if (!matrix) return std::nullopt;
+  std::array<double, 16> result;
+  for (int i = 0; i < 16; ++i) result[static_cast<std::size_t>(i)] = static_cast<double>(matrix->value()[i / 4][i % 4]);
+  return result;
+}
+
+}  // namespace
+
+std::optional<std::array<double, 16>> ExrFile::findMatrix(const std::string& attribute, int first) const {
+  return findIn(*impl_->file, attribute, first, [](const Imf::Header& header, const std::string& name) {
+    const auto single = columnsOf(header.findTypedAttribute<Imf::M44fAttribute>(name));
+    return single ? single : columnsOf(header.findTypedAttribute<Imf::M44dAttribute>(name));
+  });
+}
+
+std::optional<double> ExrFile::findNumber(const std::string& attribute, int first) const {
+  return findIn(*impl_->file, attribute, first, [](const Imf::Header& header, const std::string& name) {
+    const auto* found = header.findTypedAttribute<Imf::FloatAttribute>(name);
+    return found ? std::optional(static_cast<double>(found->value())) : std::nullopt;
+  });
+}
+
+std::optional<std::array<double, 2>> ExrFile::findPair(const std::string& attribute, int first) const {
+  return findIn(*impl_->file, attribute, first, [](const Imf::Header& header, const std::string& name) {
+    const auto* found = header.findTypedAttribute<Imf::V2fAttribute>(name);
+    return found ? std::optional(std::array<double, 2>{double(found->value().x), double(found->value().y)}) : std::nullopt;
+  });
 }
 
 int ExrFile::findPart(const std::vector<std::string>& channels, std::optional<int> part,

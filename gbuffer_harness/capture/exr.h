@@ -48,9 +48,9 @@ public:
   std::vector<std::string> unusedAttributes(int part) const;
   // The attribute of the first part that has it. A matrix is column-major for column vectors.
   std::optional<std::string> findText(const std::string& attribute) const;
-  std::optional<std::array<double, 16>> findMatrix(const std::string& attribute) const;
-  std::optional<double> findNumber(const std::string& attribute) const;
-  std::optional<std::array<double, 2>> findPair(const std::string& attribute) const;
+  std::optional<std::array<double, 16>> findMatrix(const std::string& attribute, int first = 0) const;
+  std::optional<double> findNumber(const std::string& attribute, int first = 0) const;
+  std::optional<std::array<double, 2>> findPair(const std::string& attribute, int first = 0) const;
 
   // The part that has all of `channels`: `part`, or when absent the only one. `field` is named in errors.
   int findPart(const std::vector<std::string>& channels, std::optional<int> part,
@@ -58,6 +58,8 @@ public:
 
   int width(int part, ExrWindow window) const;
   int height(int part, ExrWindow window) const;
+  // The first pixel of the data window.
+  std::array<int, 2> dataOrigin(int part) const;
   // False: some pixels of the display window are not in the file.
   bool coversDisplay(int part) const;
 

@@ -43,6 +43,15 @@ Matrix invertible(const Field& field) {
   return matrix;
 }
 
+// A perspective has w = -z or z, and near and far planes in number 15. Transposed, it has them in number 12.
+Matrix projection(const Field& field) {
+  const Matrix m = invertible(field);
+  if (m[11] != 0 && m[15] == 0 && std::abs(m[14]) == 1 && std::abs(m[11]) != 1)
+    field.fail("looks transposed, as number 15 is " + std::string(m[14] > 0 ? "1" : "-1") +
+               "; matrices are column-major, and number 12 of a perspective is 1 or -1");
+  return m;
+}
+
 Matrix rigid(const Field& field) {
   Matrix m = field.numbers<16>();
   constexpr double kTolerance = 1e-3;  // matrices that went through float32 and a few products
@@ -57,6 +66,9 @@ Matrix rigid(const Field& field) {
     }
   m[3] = m[7] = m[11] = 0;
   m[15] = 1;
+  if (glm::determinant(glm::dmat3(m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10])) < 0)
+    field.fail("is mirrored, and no rotation: negate the row of one axis, as that of z for a left-handed view, here and the column "
+               "of this axis in clipFromView");
   return m;
 }
 
@@ -336,8 +348,13 @@ Light readLight(const Field& field) {
   const auto number = [&](const char* key, double& value) {
     if (const auto given = field.find(key)) value = given->number();
   };
+  for (const char* key : {"innerConeAngle", "outerConeAngle"})
+    if (const auto given = field.find(key); given && light.type != PELLUCID_LIGHT_SPOT)
+      given->fail("is of spot lights; the light is " + kLightTypes[light.type]);
   number("intensity", light.intensity);
   number("range", light.range);
+  if (const auto range = field.find("range"); light.range > 0 && light.type == PELLUCID_LIGHT_DIRECTIONAL)
+    range->fail("is of point and spot lights; the light is directional");
   number("radius", light.radius);
   number("innerConeAngle", light.innerConeAngle);
   number("outerConeAngle", light.outerConeAngle);
@@ -465,13 +482,17 @@ void parse(const Field& root, const BufferReader& read, Manifest& manifest) {
   root.allowKeys(
       {"pellucid", "metersPerUnit", "camera", "buffers", "lights", "environment", "materials", "truth"});
   Capture& capture = manifest.capture;
-  if (const auto meters = root.find("metersPerUnit")) {
+  if (const auto meters = root.find("metersPerUnit"))
     capture.metersPerUnit = meters->number(1e-9, 1e9);  // of the module
-  }
+  else
+    capture.warnings.push_back("metersPerUnit: missing: a scene unit is taken for 1 m; materials are as translucent as lengths say");
   const Field camera = root["camera"];
   camera.allowKeys({"clipFromView", "viewFromWorld"});
-  capture.clipFromView = invertible(camera["clipFromView"]);
+  capture.clipFromView = projection(camera["clipFromView"]);
   capture.viewFromWorld = rigid(camera["viewFromWorld"]);
+  if (capture.clipFromView[5] > 0)
+    capture.warnings.push_back("camera.clipFromView: has y up, as OpenGL's and Direct3D's; Vulkan's clip space has y down: negate the "
+                               "second row, here and in each clipFromWorld, unless the images are upside down");
 
   const Field materials = root["materials"];
   for (const Field& material : materials.items()) capture.materials.push_back(readMaterial(material));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <glm/glm.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <map>
 #include <set>
@@ -26,6 +28,8 @@ struct Request {
   bool screen;                      // must have the screen's size
   bool mustCover;                   // pixels outside the data window are an error
   const Request* beside = nullptr;  // must have that one's size; comes after it
+  const DepthImage* depth = nullptr;
+  bool isHalf = false;              // the file has half floats
 };
 
 std::string sizeText(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
@@ -41,6 +45,7 @@ public:
   }
   Request& wantDepth(const BufferSource& source, DepthImage& depth, bool screen) {
     Request& request = want(source, depth.image, 1, kNoDepth, screen);
+    request.depth = &depth;
     request.mustCover = depth.encoding == PELLUCID_DEPTH_DEVICE;
     return request;
   }
@@ -57,11 +62,12 @@ public:
     const Request* ofView = nullptr;  // the first of a stereo file
     std::string firstView;
     std::set<std::string> said;
-    for (const Request& request : requests_) {
+    for (Request& request : requests_) {
       const BufferSource& source = *request.source;
       if (source.isConstant()) continue;
       const ExrFile& file = open(source.file, source.field + ".file");
       const int part = file.findPart(source.channels, source.part, source.field);
+      request.isHalf = file.channelFormat(part, source.channels.front()) == "half";
       const std::string view = request.screen ? file.viewOf(part, source.channels.front()) : "";
       if (!view.empty() && ofView && view != firstView)
         throw InputError(source.file.string(), source.field,
@@ -77,6 +83,10 @@ public:
             warnings.push_back(source.field + ": " + source.file.filename().string() + ", " + sentence);
       // In a file of several parts the display window is the screen's, whatever the shadow map's size.
       const ExrWindow window = request.screen || file.partCount() == 1 ? ExrWindow::Display : ExrWindow::Data;
+      if (const auto [x, y] = file.dataOrigin(part); !request.screen && window == ExrWindow::Data && (x != 0 || y != 0))
+        throw InputError(source.file.string(), source.field,
+                         "the part's data window begins at (" + std::to_string(x) + ", " + std::to_string(y) +
+                             "); a cropped shadow map lacks texels: write the whole window, or a file of one part");
       const int width = file.width(part, window), height = file.height(part, window);
       if (request.screen && !first) {
         first = &request;
@@ -107,6 +117,7 @@ public:
       if (request.source->isConstant()) fill(request, screenWidth, screenHeight);
       if (request.beside) checkBeside(request);
       scale(request);
+      if (request.isHalf && request.depth) warnOfHalves(request, warnings);
     }
   }
 
@@ -115,6 +126,24 @@ private:
     auto found = files_.find(path);
     if (found == files_.end()) found = files_.emplace(path, ExrFile(path, field)).first;
     return found->second;
+  }
+
+  // Halves tell distances apart by a part in 2048; device depths are coarser still.
+  void warnOfHalves(const Request& request, std::vector<std::string>& warnings) const {
+    double nearest = kLeastNoDepth;
+    for (const float v : request.image->data)
+      if (v > 0) nearest = std::min(nearest, static_cast<double>(v));
+    const double step = nearest / 2048 * manifest_.capture.metersPerUnit * 1000;
+    constexpr double kFine = 0.05;  // mm, of a thickness of a millimeter
+    if (request.depth->encoding == PELLUCID_DEPTH_DEVICE)
+      warnings.push_back(request.source->field + ": device depths in half floats are too coarse for thicknesses; write 32-bit floats");
+    else if (step > kFine && nearest < kLeastNoDepth) {
+      std::ostringstream sentence;
+      sentence.precision(2);
+      sentence << request.source->field << ": half floats tell depths apart by " << step
+               << " mm or more; thin parts need 32-bit floats";
+      warnings.push_back(sentence.str());
+    }
   }
 
   void checkBeside(const Request& request) const {
@@ -176,7 +205,10 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Buffer
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (stored.data[i] == kOutside) continue;
     const float value = std::round(stored.data[i]);
-    const bool isWhole = std::abs(value) <= kMaxStoredMaterial;
+    // Halves and scaled bytes are off by less.
+    const bool isFiltered = std::abs(value - stored.data[i]) > 0.01f;
+    if (isFiltered && others == map.end()) fail(i, ", which is no whole number; images of materials must not be filtered");
+    const bool isWhole = !isFiltered && std::abs(value) <= kMaxStoredMaterial;
     int index = isWhole ? static_cast<int>(value) : -1;
     if (const auto mapped = map.find(index); isWhole && mapped != map.end())
       index = mapped->second;
@@ -258,6 +290,32 @@ void divideByAlbedo(const Manifest& manifest, Capture& capture) {
   }
 }
 
+// Planar distance of a stored depth.
+double planarOf(const Matrix& clip, PellucidDepthEncoding encoding, float stored) {
+  const double depth = stored, z = encoding == PELLUCID_DEPTH_DEVICE ? (clip[14] - depth * clip[15]) / (depth * clip[11] - clip[10]) : 0;
+  return encoding == PELLUCID_DEPTH_DEVICE ? (clip[11] > 0 ? z : -z) : depth;
+}
+
+// Between the front and the back depth of a pixel with a material, a light enters no face.
+void warnOfLightsInBodies(Capture& c) {
+  if (c.backDepth.image.empty() || c.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) return;
+  for (std::size_t i = 0; i < c.lights.size(); ++i) {
+    if (c.lights[i].type == PELLUCID_LIGHT_DIRECTIONAL) continue;
+    const glm::dvec4 view = glm::make_mat4(c.viewFromWorld.data()) * glm::dvec4(glm::make_vec3(c.lights[i].position.data()), 1),
+                     clip = glm::make_mat4(c.clipFromView.data()) * view;
+    const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(c.width, c.height);
+    if (!(clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < c.width && at.y < c.height)) continue;
+    const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
+    const double light = c.clipFromView[11] > 0 ? view.z : -view.z;
+    const double front = planarOf(c.clipFromView, c.frontDepth.encoding, *c.frontDepth.image.at(x, y)),
+                 back = planarOf(c.clipFromView, c.backDepth.encoding, *c.backDepth.image.at(x, y));
+    if (c.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(c.width) + static_cast<std::size_t>(x)] != 0 &&
+        front > 0 && front < light && light < back && back < static_cast<double>(kLeastNoDepth))
+      c.warnings.push_back("lights[" + std::to_string(i) + "].position: lies inside the body that pixel (" + std::to_string(x) + ", " +
+                           std::to_string(y) + ") shows: its light enters no face, and none comes through; move it outside");
+  }
+}
+
 Capture readImages(const Manifest& manifest) {
   Capture capture = manifest.capture;
   Image material, irradianceTimes, truthTimes;
@@ -318,6 +376,11 @@ Capture readImages(const Manifest& manifest) {
         capture.lights[i].shadowMaps[k].casterMaterial =
             materialIndices(manifest, *sources.casterMaterial, sources.casterMaterialMap, *caster++);
   if (manifest.irradianceIncludesAlbedo) divideByAlbedo(manifest, capture);
+  const std::vector<float>& backs = capture.backDepth.image.data;
+  if (manifest.backDepth && capture.backDepth.encoding == PELLUCID_DEPTH_THICKNESS && manifest.backDepth->scale == 1 &&
+      std::none_of(backs.begin(), backs.end(), [](float v) { return v > 1; }))
+    capture.warnings.push_back("buffers.backDepth: no thickness is above 1 mm; \"scale\" gives the mm of 1 if the map holds values from 0 to 1");
+  warnOfLightsInBodies(capture);
   return capture;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/error.h"
+
 namespace pellucid::harness {
 namespace {
 
@@ -65,6 +67,12 @@ ShadowImages shadowImages(const std::vector<Light>& lights) {
       for (const ShadowMap& map : light.shadowMaps)
         if (map.sharedImage == number) extend(source, map);
   }
+  constexpr double kMostBytes = 4e9;  // of an image, as drivers have it at the least
+  for (const ShadowImageSource& source : result.images)
+    if (4.0 * source.width * source.height * source.layers > kMostBytes)
+      throw InputError("", "lights.shadowMap.layer",
+                       "an image of " + std::to_string(source.layers) + " layers of " + std::to_string(source.width) + "x" +
+                           std::to_string(source.height) + " texels has more than 4 GB; number layers from 0 on");
   return result;
 }
 

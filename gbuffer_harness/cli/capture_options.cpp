@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include "capture/manifest_parts.h"
 #include "capture/material.h"
@@ -16,6 +17,7 @@
 #include "raster/framing.h"
 #include "reference/path_tracer/visible_surface.h"
 #include "scene/model.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness {
 
@@ -322,6 +324,22 @@ Light parseLight(const std::string& text, const Model& model, const ModelCamera&
 
 namespace {
 
+// A file's camera may cut the model: what lies before its near plane is not drawn, and a back beyond its far plane gives no depth.
+void warnOfPlanes(const Model& model, const ModelCamera& camera, std::vector<std::string>& warnings) {
+  const glm::dmat4 view = toGlm(camera.viewFromWorld);
+  std::size_t before = 0, beyond = 0;
+  for (const Vertex& vertex : model.vertices) {
+    const double ahead = -(view * glm::dvec4(positionOf(vertex), 1)).z;
+    before += ahead > 0 && ahead < camera.range.nearPlane;
+    beyond += ahead > camera.range.farPlane;
+  }
+  for (const auto& [cut, plane, value, place] : {std::tuple(before, "znear", camera.range.nearPlane, "before"),
+                                                {beyond, "zfar", camera.range.farPlane, "beyond"}})
+    if (cut > 0)
+      warnings.push_back("camera \"" + camera.name + "\": its " + plane + ", " + std::to_string(value) + ", cuts the model: " +
+                         std::to_string(cut) + " vertices lie " + place + " it");
+}
+
 // raster/bodies.h, with a note.
 void separateBodies(CaptureModel& model) {
   std::vector<double> reach;
@@ -371,6 +389,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
   }
   separateBodies(result);
   result.camera = chooseCamera(options, result.model, result.raster, turns);
+  warnOfPlanes(result.model, result.camera, result.warnings);
   if (options.size.empty() && result.camera.aspect > 0)
     result.raster.width = static_cast<int>(
         std::clamp(std::round(result.raster.height * result.camera.aspect), 1.0, double(kLargestSide)));
@@ -379,7 +398,7 @@ CaptureModel captureModel(const CaptureOptions& options, const std::vector<doubl
     lights = lightsOfNone;
     std::string names;
     for (const std::string& light : lights) names += " --light " + light;
-    result.warnings.push_back("the file has no lights; added:" + names);
+    result.warnings.push_back("the scene has no visible lights; added:" + names);
   }
   if (!lights.empty()) result.model.lights.clear();
   for (const std::string& light : lights)

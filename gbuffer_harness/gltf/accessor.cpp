@@ -112,9 +112,11 @@ public:
       : name_("accessors[" + std::to_string(index) + "]"),
         accessor_(document.model.accessors[document.index(index, document.model.accessors.size(), field,
                                                           "accessors")]) {
-    if (accessor_.bufferView >= 0 || !accessor_.sparse.isSparse)
+    if (accessor_.bufferView >= 0)
       base_ = elementsInView(document, accessor_.bufferView, accessor_.byteOffset, accessor_.count, accessor_,
                              name_);
+    else if (accessor_.count == 0 || accessor_.count > kMostZeros)  // nothing else bounds the number of zeros
+      document.fail(name_ + ".count", std::to_string(accessor_.count) + " is not within 1 .. 2^24");
     if (accessor_.sparse.isSparse) readSparse(document);
   }
 
@@ -133,9 +135,6 @@ private:
   void readSparse(const GltfDocument& document) {
     const std::string field = name_ + ".sparse";
     const auto& sparse = accessor_.sparse;
-    // Without a buffer view, nothing bounds the number of zeros.
-    if (!base_.first && accessor_.count > kMostZeros)
-      document.fail(name_ + ".count", std::to_string(accessor_.count) + " is more than 2^24");
     if (sparse.count < 0) document.fail(field + ".count", std::to_string(sparse.count) + " is negative");
     const auto count = static_cast<std::size_t>(sparse.count);
     tinygltf::Accessor integers;

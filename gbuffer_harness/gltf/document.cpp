@@ -34,6 +34,20 @@ const Type kIndex{"an integer >= 0", [](const GltfJson& v) {
                     return v.is_number_unsigned() || (v.is_number_integer() && v.get<std::int64_t>() >= 0);
                   }};
 
+template <std::size_t N>
+bool holdsNumbers(const GltfJson& v) {
+  return v.is_array() && v.size() == N && std::all_of(v.begin(), v.end(), [](const GltfJson& e) { return e.is_number(); });
+}
+const Type kThree{"3 numbers", &holdsNumbers<3>}, kFour{"4 numbers", &holdsNumbers<4>}, kSixteen{"16 numbers", &holdsNumbers<16>};
+const Type kAlphaMode{"OPAQUE, MASK or BLEND", [](const GltfJson& v) { return v == "OPAQUE" || v == "MASK" || v == "BLEND"; }};
+const Type kCameraType{"perspective or orthographic",
+                       [](const GltfJson& v) { return v == "perspective" || v == "orthographic"; }};
+const Type kLightType{"directional, point or spot",
+                      [](const GltfJson& v) { return v == "directional" || v == "point" || v == "spot"; }};
+const Type kStride{"a multiple of 4 from 4 to 252", [](const GltfJson& v) {
+                     return v.is_number_unsigned() && v >= 4 && v <= 252 && v.get<std::uint64_t>() % 4 == 0;
+                   }};
+
 enum class Need { None, Always, OfType };  // OfType: where the object's "type" is the path's last key
 
 // Paths that tinygltf needs to be there, or to be of a type. A step of a path is a key, keys with commas, or
@@ -62,8 +76,11 @@ const Rule kRules[] = {
     {"nodes.*.children", kArray},
     {"nodes.*.children.*", kIndex},
     {"nodes.*.mesh,skin,camera", kIndex},
-    {"nodes.*.matrix,translation,rotation,scale,weights", kArray},
-    {"meshes.*.weights", kArray},
+    {"nodes.*.matrix", kSixteen},
+    {"nodes.*.translation,scale", kThree},
+    {"nodes.*.rotation", kFour},
+    {"nodes,meshes.*.weights", kArray},
+    {"nodes,meshes.*.weights.*", kNumber},
     {"meshes.*.primitives", kArray, kRequired},
     {"meshes.*.primitives.*", kObject},
     {"meshes.*.primitives.*.attributes", kObject, kRequired},
@@ -81,11 +98,13 @@ const Rule kRules[] = {
     {"accessors.*.sparse.indices,values", kObject, kRequired},
     {"accessors.*.sparse.indices,values.bufferView", kIndex, kRequired},
     {"accessors.*.sparse.indices.componentType", kIndex, kRequired},
+    {"accessors.*.sparse.indices,values.byteOffset", kIndex},
     {"bufferViews.*.buffer,byteLength", kIndex, kRequired},
-    {"bufferViews.*.byteOffset,byteStride", kIndex},
+    {"bufferViews.*.byteOffset", kIndex},
+    {"bufferViews.*.byteStride", kStride},
     {"buffers.*.byteLength", kIndex, kRequired},
     {"buffers.*.uri", kString},
-    {"cameras.*.type", kString, kRequired},
+    {"cameras.*.type", kCameraType, kRequired},
     {"cameras.*.perspective,orthographic", kObject, Need::OfType},
     {"cameras.*.perspective.yfov,znear", kNumber, kRequired},
     {"cameras.*.perspective.zfar,aspectRatio", kNumber},
@@ -93,20 +112,25 @@ const Rule kRules[] = {
     {"images.*.uri", kString},
     {"images.*.bufferView", kIndex},
     {"textures.*.source,sampler", kIndex},
+    {"samplers.*.wrapS,wrapT,minFilter,magFilter", kIndex},
     {"materials.*.pbrMetallicRoughness,normalTexture,extensions", kObject},
-    {"materials.*.pbrMetallicRoughness.baseColorFactor", kArray},
+    {"materials.*.pbrMetallicRoughness.baseColorFactor", kFour},
     {"materials.*.pbrMetallicRoughness.baseColorTexture", kObject},
     {"materials.*.pbrMetallicRoughness.baseColorTexture.index", kIndex, kRequired},
     {"materials.*.normalTexture.index", kIndex, kRequired},
-    {"materials.*.alphaMode", kString},
+    {"materials.*.normalTexture.scale", kNumber},
+    {"materials.*.alphaMode", kAlphaMode},
     {"materials.*.alphaCutoff", kNumber},
     {"materials.*.doubleSided", kBoolean},
     {"extensions", kObject},
     {"extensions.KHR_lights_punctual", kObject},
     {"extensions.KHR_lights_punctual.lights", kArray},
     {"extensions.KHR_lights_punctual.lights.*", kObject},
-    {"extensions.KHR_lights_punctual.lights.*.type", kString, kRequired},
+    {"extensions.KHR_lights_punctual.lights.*.type", kLightType, kRequired},
+    {"extensions.KHR_lights_punctual.lights.*.color", kThree},
+    {"extensions.KHR_lights_punctual.lights.*.intensity,range", kNumber},
     {"extensions.KHR_lights_punctual.lights.*.spot", kObject, Need::OfType},
+    {"extensions.KHR_lights_punctual.lights.*.spot.innerConeAngle,outerConeAngle", kNumber},
 };
 
 std::string shown(const GltfJson& value) {
@@ -164,10 +188,24 @@ void checkNesting(const std::string& file, std::string_view json) {
   }
 }
 
+// Files of glTF 1.0 differ in all else.
+void checkVersion(const std::string& file, const GltfJson& json) {
+  const GltfJson asset = json.value("asset", GltfJson());
+  for (const char* key : {"version", "minVersion"}) {
+    const GltfJson version = asset.is_object() ? asset.value(key, GltfJson()) : GltfJson();
+    const bool fits = std::string_view(key) == "version" ? version.is_string() && version.get<std::string>().starts_with("2.")
+                                                         : version == "2.0";
+    if (!version.is_null() && !fits) throw InputError(file, std::string("asset.") + key, shown(version) + " is not 2.0; export glTF 2.0");
+  }
+}
+
 // Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
 // extensions that are required and not known, and properties that are missing or of another type.
 GltfJson parseGltfJson(const std::string& file, std::string_view text) {
   checkNesting(file, text);
+  const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");  // behind a mark of UTF-8
+  if (first == std::string_view::npos || text[first] != '{')
+    throw InputError(file, "", "is no glTF file, which begins with \"{\" or \"glTF\"; export one as .glb");
   GltfJson json;
   try {
     json = GltfJson::parse(text);
@@ -175,17 +213,33 @@ GltfJson parseGltfJson(const std::string& file, std::string_view text) {
     throw InputError(file, "", std::string("its JSON cannot be parsed: ") + e.what());
   }
   if (!json.is_object()) throw InputError(file, "", "its JSON is not an object");
+  checkVersion(file, json);
   checkRequiredExtensions(file, json);
   for (const Rule& rule : kRules) apply(file, rule, json, rule.path, "");
   return json;
 }
 
+// The data URI of a MIME type that tinygltf takes: it takes other types for names of files. The bytes say what they are.
+void setDataType(GltfJson& object, const char* type) {
+  const auto uri = object.find("uri");
+  if (uri == object.end() || !uri->is_string()) return;
+  const std::string text = *uri, mark = ";base64,";
+  const std::size_t at = text.find(mark);
+  if (text.starts_with("data:") && at != std::string::npos) *uri = "data:" + std::string(type) + text.substr(at);
+}
+
 // The document without animations, which captures have none of, and without skins, which this program reads
-// itself: tinygltf is stricter about both than glTF.
-GltfJson forTinyGltf(const GltfJson& json) {
+// itself: tinygltf is stricter about both than glTF. `bytes`: of the buffers, which may be longer than they say.
+GltfJson forTinyGltf(const GltfJson& json, const std::vector<std::size_t>& bytes) {
   GltfJson result = json;
   result.erase("animations");
   result.erase("skins");
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    result["buffers"][i]["byteLength"] = bytes[i];
+    setDataType(result["buffers"][i], "application/octet-stream");
+  }
+  if (const auto images = result.find("images"); images != result.end())
+    for (GltfJson& image : *images) setDataType(image, "image/png");
   pointToCompressed(result);
   return result;
 }
@@ -349,23 +403,27 @@ std::size_t base64Bytes(const std::string& uri) {
   return digits * 3 / 4;
 }
 
-// Refuses by name the buffers that tinygltf would refuse without a name. `binary`: bytes of a GLB's own
+// Bytes of each buffer. Refuses by name the buffers that tinygltf would refuse without a name. `binary`: bytes of a GLB's own
 // buffer.
-void checkBuffers(const GltfDocument& document, Session& session, std::size_t binary) {
+std::vector<std::size_t> checkBuffers(const GltfDocument& document, Session& session, std::size_t binary) {
+  std::vector<std::size_t> all;
   const auto buffers = document.json.find("buffers");
-  if (buffers == document.json.end()) return;
+  if (buffers == document.json.end()) return all;
   for (std::size_t i = 0; i < buffers->size(); ++i) {
     const GltfJson& buffer = (*buffers)[i];
+    const std::size_t claimed = buffer["byteLength"];
+    all.push_back(claimed);
     if (isMeshoptFallback(buffer)) continue;
     const std::string field = "buffers[" + std::to_string(i) + "].";
-    const std::size_t claimed = buffer["byteLength"];
     const std::string uri = buffer.value("uri", "");
     std::size_t bytes = binary;
     std::string where = "BIN chunk";
     if (uri.empty()) {
       if (binary == 0) document.fail(field + "uri", "is missing");
       if (claimed <= binary) continue;  // the chunk is padded
-    } else if (uri.rfind("data:", 0) == 0) {
+    } else if (uri.starts_with("data:") && uri.find(";base64,") == std::string::npos) {
+      document.fail(field + "uri", "\"" + uri.substr(0, 40) + "\" is a data URI that is not base64");
+    } else if (uri.starts_with("data:")) {
       bytes = base64Bytes(uri);
       where = "data URI";
     } else {
@@ -376,10 +434,12 @@ void checkBuffers(const GltfDocument& document, Session& session, std::size_t bi
       bytes = static_cast<std::size_t>(fs::file_size(name, error));
       where = "\"" + uri + "\"";
     }
-    if (claimed != bytes)
-      document.fail(field + "byteLength", std::to_string(claimed) + " are not the " + std::to_string(bytes) +
+    if (claimed > bytes)
+      document.fail(field + "byteLength", std::to_string(claimed) + " are more than the " + std::to_string(bytes) +
                                               " bytes of its " + where);
+    all.back() = bytes;
   }
+  return all;
 }
 
 }  // namespace
@@ -432,8 +492,8 @@ GltfDocument readGltf(const fs::path& path) {
   Session session;
   std::error_code error;
   session.folder = fs::canonical(path, error).parent_path();
-  checkBuffers(document, session, isBinary(bytes) ? binaryBytes(bytes, text) : 0);
-  bytes = withJson(std::move(bytes), text.size(), forTinyGltf(document.json).dump());
+  const std::vector<std::size_t> buffers = checkBuffers(document, session, isBinary(bytes) ? binaryBytes(bytes, text) : 0);
+  bytes = withJson(std::move(bytes), text.size(), forTinyGltf(document.json, buffers).dump());
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(fileAccess(session));
   loader.SetImageLoader(keepImage, &session);
@@ -455,8 +515,6 @@ GltfDocument readGltf(const fs::path& path) {
   if (!session.refusal.empty()) document.fail("", session.refusal);
   // Some mistakes only leave a message, and the object out.
   if (!loaded || !problems.empty()) document.fail("", sentenceOf(problems));
-  if (document.model.asset.version.rfind("2.", 0) != 0)
-    document.fail("asset.version", "\"" + document.model.asset.version + "\" is not 2.x");
   document.images = std::move(session.images);
   document.images.resize(document.model.images.size());
   decodeMeshopt(document);

@@ -85,16 +85,16 @@ const std::vector<GltfField>& gltfFields() {
 
 const std::vector<GltfExtension>& gltfExtensions() {
   static const std::vector<GltfExtension> extensions = {
-      {"EXT_meshopt_compression", kUsed},
-      {"KHR_lights_punctual", kUsed},
-      {"KHR_materials_diffuse_transmission", kUsed},
-      {"KHR_materials_ior", kUsed},
-      {"KHR_materials_transmission", kUsed},
-      {"KHR_materials_volume", kUsed},
-      {"KHR_materials_volume_scatter", kUsed},
+      {"EXT_meshopt_compression", kUsed, "", "buffers,bufferViews"},
+      {"KHR_lights_punctual", kUsed, "", "extensions,nodes"},
+      {"KHR_materials_diffuse_transmission", kUsed, "", "materials"},
+      {"KHR_materials_ior", kUsed, "", "materials"},
+      {"KHR_materials_transmission", kUsed, "", "materials"},
+      {"KHR_materials_volume", kUsed, "", "materials"},
+      {"KHR_materials_volume_scatter", kUsed, "", "materials"},
       {"KHR_mesh_quantization", kUsed},
-      {"KHR_node_visibility", kUsed},
-      {"KHR_texture_transform", kUsed},
+      {"KHR_node_visibility", kUsed, "", "nodes"},
+      {"KHR_texture_transform", kUsed, "", "materials"},
       {"KHR_animation_pointer", kNoEffect, "of animations"},
       {"KHR_materials_anisotropy", kNoEffect, "of specular light"},
       {"KHR_materials_clearcoat", kNoEffect, "of specular light"},
@@ -197,7 +197,10 @@ private:
   void extensions(const GltfJson& value, const std::string& place) {
     for (const auto& [name, element] : value.items()) {
       const GltfExtension* known = extensionNamed(name);
-      if (known && known->use == kUsed)
+      const bool isUsed = known && known->use == kUsed;
+      if (isUsed && !fitsKey(known->places, place.substr(0, place.find_first_of("[."))))
+        add(name + " there", place + "." + name + ": objects there do not have this extension, and what it says is left out");
+      else if (isUsed)
         field(element, place + "." + name, {name});
       else
         used(name);

@@ -31,6 +31,7 @@ struct GltfExtension {
   const char* name;
   FieldUse use;
   const char* sentence = "";  // of all but Used; of Refused: the command that exports without it
+  const char* places = "";    // of Used: keys of the root below which objects have it, with commas; "extensions": the root
 };
 const std::vector<GltfExtension>& gltfExtensions();
 

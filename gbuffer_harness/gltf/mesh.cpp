@@ -313,9 +313,17 @@ bool appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& pr
     return false;
   }
   const Attributes attributes = readAttributes(document, primitive, field, texCoords, pose.weights);
-  if (texCoords.normal.set >= 0 && !attributes.normalUv)
-    warnings.push_back(field + ": has no TEXCOORD_" + std::to_string(texCoords.normal.set) +
-                       " for its normal map, which is ignored");
+  const auto warnOfLacking = [&](const TexCoord& use, bool has, const char* what) {
+    if (use.set >= 0 && !has)
+      warnings.push_back(field + ": has no TEXCOORD_" + std::to_string(use.set) + " for its " + what);
+  };
+  warnOfLacking(texCoords.normal, attributes.normalUv.has_value(), "normal map, which is ignored");
+  warnOfLacking(texCoords.color, attributes.uv.has_value(), "color texture, whose first texel is taken everywhere");
+  warnOfLacking(texCoords.lobe, attributes.lobeUv.has_value(),
+                "textures of transmission and scattering, whose first texels are taken everywhere");
+  const auto isFraction = [](float v) { return v >= 0 && v <= 1; };
+  if (attributes.color && !std::all_of(attributes.color->data.begin(), attributes.color->data.end(), isFraction))
+    document.fail(field + ".attributes.COLOR_0", "has values outside 0 .. 1; integers need \"normalized\": true");
   std::vector<std::uint32_t> indices;
   if (primitive.indices != -1) {
     indices = readIndices(document, primitive.indices, attributes.count(), field + ".indices");

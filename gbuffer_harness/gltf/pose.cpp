@@ -48,8 +48,14 @@ glm::dmat4 parentFromNode(const GltfDocument& document, std::size_t index) {
   const auto m = numbers(document, node.matrix, std::vector<double>(16), field + "matrix");
   glm::dmat4 matrix;
   for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-  if (glm::transpose(matrix)[3] != glm::dvec4(0, 0, 0, 1))
-    document.fail(field + "matrix", "its last row is not 0, 0, 0, 1");
+  // Exporters multiply matrices in floats.
+  constexpr double kRounding = 1e-5;
+  glm::dvec4 last = glm::transpose(matrix)[3];
+  if (last.w != 0) last /= last.w;
+  if (!(glm::length(last - glm::dvec4(0, 0, 0, 1)) <= kRounding))
+    document.fail(field + "matrix", "its last row, numbers 4, 8, 12 and 16, is not 0, 0, 0, 1; matrices are column-major");
+  matrix /= matrix[3][3];
+  for (int i = 0; i < 4; ++i) matrix[i][3] = i == 3;
   return matrix;
 }
 

@@ -101,7 +101,7 @@ Texture readTexture(const GltfDocument& document, int textureIndex, const std::s
   const int size = static_cast<int>(bytes.size);  // files have at most 2^30 bytes
   int width = 0, height = 0, channels = 0;
   if (!stbi_info_from_memory(data, size, &width, &height, &channels))
-    document.fail(name, "is neither PNG nor JPEG");
+    document.fail(name, "is neither PNG nor JPEG; `gltf-transform png in.glb out.glb` makes PNG files");
   if (static_cast<long long>(width) * height > kMaxPixels)
     document.fail(name,
                   std::to_string(width) + " x " + std::to_string(height) + " pixels are more than 2^26");

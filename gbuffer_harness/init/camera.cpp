@@ -1,5 +1,6 @@
 #include "init/manifest.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -20,21 +21,23 @@ struct Attributes {
   std::optional<std::array<double, 2>> screenWindowCenter;
 };
 
-Attributes attributesOf(const std::vector<std::filesystem::path>& files) {
+Attributes attributesOf(std::vector<std::filesystem::path> files, const ChannelGroup& color) {
   Attributes all;
+  std::stable_partition(files.begin(), files.end(), [&](const auto& path) { return path == color.file; });
   for (const std::filesystem::path& path : files) {
     const ExrFile file(path);
+    const int first = path == color.file ? color.part : 0;
     const auto take = [&](auto& to, auto found) {
       if (!to && found) {
         to = found;
         all.file = path.string();
       }
     };
-    take(all.worldToCamera, file.findMatrix("worldToCamera"));
-    take(all.worldToNdc, file.findMatrix("worldToNDC"));
-    if (!all.screenWindowWidth) all.screenWindowWidth = file.findNumber("screenWindowWidth");
-    if (!all.screenWindowCenter) all.screenWindowCenter = file.findPair("screenWindowCenter");
-    if (!all.pixelAspectRatio) all.pixelAspectRatio = file.findNumber("pixelAspectRatio");
+    take(all.worldToCamera, file.findMatrix("worldToCamera", first));
+    take(all.worldToNdc, file.findMatrix("worldToNDC", first));
+    if (!all.screenWindowWidth) all.screenWindowWidth = file.findNumber("screenWindowWidth", first);
+    if (!all.screenWindowCenter) all.screenWindowCenter = file.findPair("screenWindowCenter", first);
+    if (!all.pixelAspectRatio) all.pixelAspectRatio = file.findNumber("pixelAspectRatio", first);
   }
   return all;
 }
@@ -43,6 +46,8 @@ Attributes attributesOf(const std::vector<std::filesystem::path>& files) {
 // along -z.
 Matrix viewOf(const Attributes& attributes) {
   glm::dmat4 view = toGlm(*attributes.worldToCamera);
+  if (!(glm::length(glm::transpose(view)[3] - glm::dvec4(0, 0, 0, 1)) < 1e-3))
+    throw InputError(attributes.file, "worldToCamera", "is no rotation and translation, or transposed; give --eye and --target instead");
   for (int i = 0; i < 3; ++i)
     if (std::abs(glm::length(glm::dvec3(view[i])) - 1) > 1e-3)
       throw InputError(attributes.file, "worldToCamera", "has a scale; give --eye and --target instead");
@@ -101,9 +106,9 @@ std::string degrees(double radians) {
 
 }  // namespace
 
-GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int width, int height,
+GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, const ChannelGroup& color, int width, int height,
                           const CameraWords& words, const DepthFacts& depth) {
-  const Attributes attributes = attributesOf(files);
+  const Attributes attributes = attributesOf(files, color);
   GuessedCamera camera;
   if (words.eye || words.target) {
     if (!words.eye || !words.target)

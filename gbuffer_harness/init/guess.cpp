@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -33,6 +34,14 @@ std::string componentOf(const std::string& name) {
   return component;
 }
 
+// depth.0001: the frame's number says nothing of the content.
+std::string withoutFrame(const std::string& stem) {
+  const std::size_t end = stem.find_last_not_of("0123456789");
+  return end != std::string::npos && end > 0 && end + 1 < stem.size() && std::string(". _-").find(stem[end]) != std::string::npos
+             ? stem.substr(0, end)
+             : stem;
+}
+
 void addPart(const std::filesystem::path& path, const ExrFile& file, int part,
              std::vector<ChannelGroup>& groups) {
   if (lower(file.partName(part)).find("crypto") != std::string::npos) return;
@@ -44,8 +53,8 @@ void addPart(const std::filesystem::path& path, const ExrFile& file, int part,
     layers[layer][componentOf(channel.substr(dot + 1))] = channel;
   }
   for (auto& [layer, components] : layers) {
-    ChannelGroup group{path, part, layer, !layer.empty(), file.viewOf(part, components.begin()->second), {}};
-    if (layer.empty()) group.name = file.partCount() > 1 ? file.partName(part) : path.stem().string();
+    ChannelGroup group{path, part, layer, !layer.empty(), file.viewOf(part, components.begin()->second), file.partCount() > 1, {}};
+    if (layer.empty()) group.name = file.partCount() > 1 ? file.partName(part) : withoutFrame(path.stem().string());
     const auto add = [&](std::vector<std::string> channels) {
       if (channels.empty()) return;
       group.channels = std::move(channels);
@@ -128,6 +137,8 @@ const Name kNames[] = {
     {Role::FrontDepth, Match::Holds, "frontdepth", "Pellucid's front depth"},
     {Role::FrontDepth, Match::Holds, "scenedepth", "Unreal's scene depth, in centimeters", "", 1,
      kCentimeter},
+    {Role::FrontDepth, Match::Holds, "worlddepth", "a world depth of Unreal's render queue, in centimeters", "", 1,
+     kCentimeter},
     {Role::FrontDepth, Match::Holds, "cameradepth", "Unity's depth texture"},
     {Role::FrontDepth, Match::Ends, "depthz", "a depth pass of Blender"},
     {Role::FrontDepth, Match::Holds, "zdepth", "a depth pass of V-Ray"},
@@ -205,10 +216,12 @@ bool fits(const std::string& name, const Name& known) {
 // The role's buffer has three numbers a pixel.
 bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Albedo; }
 
-// A single number may be the first of a color: RenderDoc saves every texture as one, and V-Ray every number.
+// A single number may be the first of a color: RenderDoc saves every texture as one, and V-Ray, Redshift, Octane and Corona their
+// depths and ids.
 bool hasShapeOf(Role role, const ChannelGroup& group) {
   if (isTriple(role)) return group.channels.size() == 3;
-  const bool isNumber = role == Role::Material && plain(group.name).ends_with("id");
+  const std::string name = plain(group.name);
+  const bool isNumber = role == Role::Material ? name.ends_with("id") : name.find("depth") != std::string::npos || name.ends_with("z");
   return group.channels.size() == 1 || !group.isNamed || isNumber;
 }
 
@@ -222,16 +235,23 @@ std::vector<std::string> namesOf(const ChannelGroup& group) {
   return names;
 }
 
-// True of normals, and of passes of specular light, whose names hold the names of diffuse passes, too.
+bool holdsAny(const std::string& name, std::initializer_list<const char*> parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](const char* part) { return name.find(part) != std::string::npos; });
+}
+
+// True of passes that have the name of a role and other content: a denoiser's guides, and mist, which grows from 0 to 1.
+bool isNoRole(const std::string& name) { return holdsAny(name, {"denois", "mist"}); }
+
+// True of places, normals and motion, and of passes of other light, whose names hold the names of diffuse passes, too.
 bool isNoDiffuseLight(const std::string& name) {
-  constexpr const char* kParts[] = {"normal", "gbuffera", "specular", "reflect", "refract"};
-  return name == "n" || name == "nn" ||
-         std::any_of(std::begin(kParts), std::end(kParts),
-                     [&](const char* part) { return name.find(part) != std::string::npos; });
+  return name == "n" || name == "nn" || name == "p" || name == "uv" ||
+         holdsAny(name, {"normal", "gbuffera", "position", "motion", "velocity", "specular", "reflect", "refract", "indirect",
+                         "volume", "transl", "transmi", "sss", "subsurface"});
 }
 
 bool hasName(const ChannelGroup& group, const Name& known) {
   const std::vector<std::string> names = namesOf(group);
+  if (isNoRole(names[0]) || (names.size() > 1 && isNoRole(names[1]))) return false;
   if (known.role == Role::Irradiance && isNoDiffuseLight(names[0])) return false;
   return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return fits(name, known); });
 }
@@ -260,6 +280,36 @@ bool isTaken(const std::map<Role, Guess>& guesses, const ChannelGroup& group) {
     return other.file == group.file && other.part == group.part &&
            other.channels.front() == group.channels.front();
   });
+}
+
+// The view layer that a program writes before the pass: "Char" of Char.Depth, and of Char.Depth.left in the view "left".
+std::string layerOf(const ChannelGroup& group) {
+  std::string name = group.name;
+  if (!group.view.empty() && name.ends_with("." + group.view)) name.resize(name.size() - group.view.size() - 1);
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string::npos ? "" : name.substr(0, dot);
+}
+
+// Buffers of other view layers than the irradiance's give way to those of its layer.
+void takeOneLayer(const std::vector<ChannelGroup>& groups, const std::map<Role, std::string>& given,
+                  std::map<Role, Guess>& guesses) {
+  const auto light = guesses.find(Role::Irradiance);
+  if (light == guesses.end() || layerOf(light->second.group).empty()) return;
+  const std::string layer = layerOf(light->second.group);
+  for (auto& entry : guesses) {
+    const Role role = entry.first;
+    Guess& guess = entry.second;
+    if (given.count(role) || layerOf(guess.group).empty() || layerOf(guess.group) == layer) continue;
+    guess.doubt = "is of the layer \"" + layerOf(guess.group) + "\", but the irradiance of \"" + layer + "\"";
+    for (const Name& known : kNames) {
+      const auto found = std::find_if(groups.begin(), groups.end(), [&](const ChannelGroup& group) {
+        return layerOf(group) == layer && hasShapeOf(role, group) && hasNameOf(group, known, groups);
+      });
+      if (known.role != role || found == groups.end()) continue;
+      guess = guessOf(*found, known);
+      break;
+    }
+  }
 }
 
 }  // namespace
@@ -303,10 +353,16 @@ std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
     for (const ChannelGroup& group : groups) {
       if (!hasShapeOf(known.role, group) || isTaken(guesses, group)) continue;
       if (!hasNameOf(group, known, groups)) continue;
-      guesses[known.role] = guessOf(group, known);
+      Guess& guess = guesses[known.role] = guessOf(group, known);
+      // Light groups share the name, and each has a part of the light.
+      for (const ChannelGroup& other : groups)
+        if (known.role == Role::Irradiance && *known.text && &other != &group && hasShapeOf(known.role, other) &&
+            layerOf(other) == layerOf(group) && hasNameOf(other, known, groups))
+          guess.doubt = "\"" + other.name + "\" has the same name: if each holds a part of the light, render their sum";
       break;
     }
   }
+  takeOneLayer(groups, given, guesses);
   return guesses;
 }
 

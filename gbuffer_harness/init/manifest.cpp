@@ -71,7 +71,7 @@ private:
 Json Builder::sourceOf(Role role) const {
   const ChannelGroup& group = guesses_.at(role).group;
   Json json = {{"file", std::filesystem::proximate(group.file, folder_).generic_string()}};
-  if (group.part > 0) json["part"] = group.part;
+  if (group.hasBeside) json["part"] = group.part;
   if (group.channels.size() == 1)
     json["channel"] = group.channels[0];
   else
@@ -199,6 +199,10 @@ std::optional<std::map<long, std::size_t>> Builder::storedIds(const Image& image
 
 // The person's ids hold whatever else is stored: "*" of the map takes the rest.
 void Builder::mapGivenIds(const Image& image, Json& json) {
+  for (const int id : words_.materialIds)
+    if (std::abs(static_cast<double>(id)) > kMaxStoredMaterial)
+      throw UsageError("--material-id: " + std::to_string(id) + " is above " + std::to_string(kMaxStoredMaterial) +
+                       ", up to which floats tell ids apart");
   for (const int id : words_.materialIds) json["map"][std::to_string(id)] = 1;
   json["map"]["*"] = 0;
   std::string values;
@@ -304,7 +308,7 @@ void Builder::nameUnused(const std::vector<ChannelGroup>& groups) {
 }
 
 void Builder::addCamera() {
-  camera_ = guessCamera(files_, width_, height_, words_.camera, depth_);
+  camera_ = guessCamera(files_, guesses_.at(Role::Irradiance).group, width_, height_, words_.camera, depth_);
   result_.json["camera"] = {{"clipFromView", camera_.clipFromView}, {"viewFromWorld", camera_.viewFromWorld}};
   result_.found.push_back("camera: the projection is that of " + camera_.why);
   std::string unknown;
@@ -326,6 +330,8 @@ void Builder::addMissing() {
         "backDepth",
         "without the depth of back faces, or a light's shadow map, nothing says how thick things are: render "
         "back faces alone");
+  if (result_.json.contains("// metersPerUnit"))
+    result_.missing.push_back("metersPerUnit: " + result_.json["// metersPerUnit"].get<std::string>());
   if (!camera_.isPlaced && !words_.lights.empty())
     result_.missing.push_back("camera: unknown: " + camera_.unknown.front());
   result_.missing.insert(result_.missing.end(), doubts.begin(), doubts.end());
@@ -348,7 +354,7 @@ GuessedManifest Builder::build() {
   result_.json["metersPerUnit"] = meters;
   if (!words_.metersPerUnit && !(front.metersPerUnit > 0))
     result_.json["// metersPerUnit"] =
-        "unknown: --unit says how long a unit is; a material is as translucent as its lengths say";
+        "unknown, 1 m is taken: --unit says how long a unit is; a material is as translucent as its lengths say";
   result_.json["camera"] = nullptr;
   result_.json["buffers"] = Json::object();
   addDepths();

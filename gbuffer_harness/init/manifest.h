@@ -21,6 +21,7 @@ struct ChannelGroup {
   std::string name;      // of the layer; else of the part, or of the file without extension
   bool isNamed = false;  // by a layer
   std::string view;      // of stereo files; empty: of all
+  bool hasBeside = false;  // the file has several parts
   // Full names: of a color R, G, B, of a vector X, Y, Z, else of each channel by itself.
   std::vector<std::string> channels;
 };
@@ -75,9 +76,9 @@ struct GuessedCamera {
 };
 
 // From `words`, else from the OpenEXR attributes worldToCamera, worldToNDC and screenWindowWidth of the
-// files. Throws UsageError, which names the option, where neither says the projection, and InputError for
+// files, first of the color's part. Throws UsageError, which names the option, where neither says the projection, and InputError for
 // attributes that are no camera's.
-GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, int width, int height,
+GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, const ChannelGroup& color, int width, int height,
                           const CameraWords& words, const DepthFacts& depth);
 
 struct InitWords {

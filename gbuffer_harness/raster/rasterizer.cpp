@@ -35,8 +35,8 @@ std::vector<std::string> DrawnFrame::warnings() const {
   if (counts_.material == 0) warnings.push_back("no pixel has a material: nothing is translucent");
   if (counts_.open > 0)
     warnings.push_back(std::to_string(counts_.open) + " of " + std::to_string(counts_.material) +
-                       " material pixels look through an open or single-sided mesh: they have no "
-                       "back depth" +
+                       " material pixels have no back depth: the mesh is open or single-sided, its faces are turned inward, or its "
+                       "back lies beyond the camera's far plane" +
                        (hasBackDepth() ? "" : ", and the capture no backDepth"));
   for (std::size_t i = 0; i < outline_.lights.size() && options_.shadowSize > 0; ++i)
     if (outline_.lights[i].shadowMaps.empty())

@@ -443,13 +443,57 @@ TEST_F(Manifests, FilesAreRelativeToTheManifest) {
 }
 
 TEST_F(Manifests, FloatMaterialIsRounded) {
-  Image id(kSampleWidth, kSampleHeight, 1, 8.6f);
-  id.data[0] = 0.4f;
+  Image id(kSampleWidth, kSampleHeight, 1, 8.995f);
+  id.data[0] = 0.005f;
   writeExr(directory / "id.exr", id, {"id"});
   manifest["buffers"]["material"] = {{"file", "id.exr"}, {"channel", "id"}, {"map", {{"9", 1}}}};
   const Capture capture = read();
   EXPECT_EQ(capture.material[0], 0);  // rounds to 0, which needs no entry in the map
   EXPECT_EQ(capture.material[1], 1);
+}
+
+// Between two materials, a filtered image names a third one.
+TEST_F(Manifests, FilteredMaterialsAreNamed) {
+  Image id(kSampleWidth, kSampleHeight, 1, 1);
+  id.data[2] = 0.75f;
+  writeExr(directory / "id.exr", id, {"id"});
+  manifest["buffers"]["material"] = {{"file", "id.exr"}, {"channel", "id"}};
+  expectNames(error(), {"id.exr", "buffers.material", "pixel (2, 0) holds 0.75", "no whole number"});
+}
+
+// What a reader takes for granted is said.
+TEST_F(Manifests, WarningsNameHalvesUnitsAndLightsInBodies) {
+  const auto warns = [&](const char* words) {
+    const std::vector<std::string> all = read().warnings;
+    return std::any_of(all.begin(), all.end(), [&](const std::string& s) { return s.find(words) != std::string::npos; });
+  };
+  EXPECT_FALSE(warns("metersPerUnit"));
+  EXPECT_FALSE(warns("half floats"));
+  EXPECT_FALSE(warns("lies inside the body"));
+  manifest.erase("metersPerUnit");
+  EXPECT_TRUE(warns("metersPerUnit: missing"));
+
+  const Image front(kSampleWidth, kSampleHeight, 1, 300), back(kSampleWidth, kSampleHeight, 1, 310);
+  ExrPart half;
+  half.channels.push_back({"Z", ExrFormat::Half, &front, 0});
+  writeExrParts(directory / "front.exr", {half});
+  writeExr(directory / "back.exr", back, {"Z"});
+  manifest["metersPerUnit"] = 0.001;
+  manifest["camera"] = {{"clipFromView", {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0}}, {"viewFromWorld", kIdentity}};
+  manifest["buffers"]["frontDepth"] = {{"file", "front.exr"}, {"channel", "Z"}, {"encoding", "viewZ"}};
+  manifest["buffers"]["backDepth"] = {{"file", "back.exr"}, {"channel", "Z"}, {"encoding", "viewZ"}};
+  manifest["buffers"]["material"] = {{"constant", {1}}};
+  manifest["lights"] = {{{"type", "point"}, {"position", {0, 0, -305}}}};
+  EXPECT_TRUE(warns("buffers.frontDepth: half floats tell depths apart by 0.15 mm"));
+  EXPECT_TRUE(warns("lights[0].position: lies inside the body"));
+  manifest["lights"][0]["position"] = {0, 0, -311};
+  EXPECT_FALSE(warns("lies inside the body"));
+  EXPECT_FALSE(warns("has y up"));
+  manifest["camera"]["clipFromView"][5] = 1;
+  EXPECT_TRUE(warns("has y up"));
+  EXPECT_FALSE(warns("no thickness is above 1 mm"));
+  manifest["buffers"]["backDepth"] = {{"constant", {0.5}}, {"encoding", "thickness"}};
+  EXPECT_TRUE(warns("no thickness is above 1 mm"));
 }
 
 TEST_F(Manifests, AStarNamesAllOtherMaterials) {
@@ -612,6 +656,9 @@ constexpr const char* kMistakes = R"(
 /lights/0/shadowMap/casterMaterial | {"file": "g.exr", "channel": "id"} | g.exr
 /lights/0/shadowMap/casterMaterial/map | {"3": 1} | @lights[0].shadowMap.casterMaterial | s.exr | holds 7
 /lights/0/shadowMap/casterMaterial | {"file": "s.exr", "channel": "id"} | holds 7 | 1 materials
+/lights/1/outerConeAngle | 0.5 | of spot lights
+/camera/viewFromWorld | [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1] | mirrored
+/camera/clipFromView | [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -0.1, 0, 0, -1, 0] | transposed
 /lights/1/angleTable | [1, 0] | @lights[1].direction
 /lights/1/distanceTable | [1, 0] | range
 /lights/1 | {"type": "directional", "direction": [0, 0, 1], "angleTable": [1, 0]} | @lights[1].angleTable

@@ -37,6 +37,25 @@ TEST_F(Gltf, TrianglesInWorldSpace) {
   EXPECT_EQ(m.metersPerUnit, 1);
 }
 
+// Exporters that multiply matrices in floats, leave out zeros, and write buffers with padding or any MIME type.
+TEST_F(Gltf, OddlyWrittenFilesAreTheModel) {
+  GltfBuilder b = square();
+  const Model good = loadGltf(write("t.glb", b.glb())).model;
+  b.json["nodes"] = {{{"mesh", 0}, {"matrix", {2, 0, 0, 1e-9, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2}}}};
+  EXPECT_EQ(loadGltf(write("t.glb", b.glb())).model.vertices[2].position, good.vertices[2].position);
+
+  b = square();
+  b.json["accessors"].push_back({{"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
+  b.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 3}}};
+  b.json["meshes"][0]["weights"] = {1};
+  EXPECT_EQ(loadGltf(write("t.glb", b.glb())).model.vertices[2].position, good.vertices[2].position);
+
+  b = square();
+  write("long.bin", b.buffer + "padding");
+  b.json["buffers"] = {{{"byteLength", b.buffer.size()}, {"uri", "long.bin"}}};
+  EXPECT_EQ(loadGltf(write("t.gltf", b.json.dump())).model.vertices[2].position, good.vertices[2].position);
+}
+
 TEST_F(Gltf, MirroredNodesKeepTheirOutside) {
   GltfBuilder b = square();
   b.json["nodes"] = {{{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}}};
@@ -259,6 +278,9 @@ TEST_F(Gltf, NormalMapsAreRead) {
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
     return w.find("TEXCOORD_1 for its normal map") != std::string::npos;
   }));
+  attributes().erase("TEXCOORD_0");
+  EXPECT_TRUE(says(loadGltf(write("t.glb", b.glb())).warnings, "TEXCOORD_0 for its color texture"));
+  attributes()["TEXCOORD_0"] = uv0;
   b.json["materials"][0]["normalTexture"]["scale"] = 1e300;
   expectRefused(b.glb(), {"materials[0].normalTexture.scale", "-1000 .. 1000"});
   b.json["materials"][0]["normalTexture"] = {{"index", 7}};
@@ -453,7 +475,6 @@ constexpr const char* kMistakes = R"(
 /accessors/0/type | "MAT4" | accessors[0]
 /accessors/0/type | "VEC2" | POSITION | 2 components
 /accessors/0/componentType | 5124 | accessors[0] | 5124
-/accessors/0/bufferView | removed | accessors[0].bufferView
 /accessors/0/bufferView | 99 | accessors[0].bufferView | 99
 /accessors/0/sparse | {"count": 9, "indices": {"bufferView": 2, "componentType": 5123}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.count | 9 elements
 /accessors/0/sparse | {"count": 1, "indices": {"bufferView": 2, "componentType": 5126}, "values": {"bufferView": 0}} | accessors[0].sparse.indices.componentType | unsigned
@@ -486,6 +507,15 @@ constexpr const char* kMistakes = R"(
 /cameras | [{"type": "perspective", "perspective": {"yfov": 4, "znear": 1}}] | cameras[0].perspective.yfov | 4.0
 /extensions/KHR_lights_punctual/lights | [{"type": "point"}, {"type": "spot"}] | lights[1].spot: is missing
 /extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": -1}] | lights[0].intensity
+/extensions/KHR_lights_punctual/lights | [{"type": "point", "intensity": "2"}] | lights[0].intensity | is not a number
+/extensions/KHR_lights_punctual/lights | [{"type": "point", "color": "#ff0000"}] | lights[0].color | is not 3 numbers
+/extensions/KHR_lights_punctual/lights | [{"type": "ambient"}] | lights[0].type | is not directional, point or spot
+/cameras | [{"type": "fisheye"}] | cameras[0].type | is not perspective or orthographic
+/nodes/0/translation | [null, 0, 0] | nodes[0].translation | is not 3 numbers
+/materials/0/alphaMode | "mask" | materials[0].alphaMode | is not OPAQUE, MASK or BLEND
+/materials/0/pbrMetallicRoughness | {"baseColorFactor": [0.2, null, 0.2, 1]} | materials[0].pbrMetallicRoughness.baseColorFactor | is not 4 numbers
+/samplers | [{"wrapS": "33071"}] | samplers[0].wrapS | is not an integer
+/bufferViews/0/byteStride | 13 | bufferViews[0].byteStride | is not a multiple of 4
 /extensionsRequired | ["KHR_materials_unlit", "VENDOR_thing"] | extensionsRequired | "VENDOR_thing" is not supported
 /extensionsRequired | ["KHR_draco_mesh_compression"] | extensionsRequired | "KHR_draco_mesh_compression" is not supported | gltf-transform copy in.glb out.glb
 /extensionsRequired | ["EXT_mesh_gpu_instancing"] | extensionsRequired | "EXT_mesh_gpu_instancing" is not supported | Blender
@@ -544,6 +574,9 @@ TEST_F(Gltf, FilesThatAreNotGltf) {
   expectRefused("", {""}, "empty.glb");
   expectRefused("glTF", {"truncated"});
   expectRefused("{ \"asset\": ", {"parse"}, "t.gltf");
+  expectRefused("v 0 0 0\nf 1 2 3\n", {"is no glTF file", "export one"}, "t.gltf");
+  expectRefused(R"({"asset": {"version": "1.0"}, "scene": "s"})", {"asset.version", "1.0", "export glTF 2.0"}, "t.gltf");
+  expectRefused(R"({"asset": {"version": "2.0", "minVersion": "2.1"}})", {"asset.minVersion", "2.1"}, "t.gltf");
   expectRefused("[1, 2]", {""}, "t.gltf");
   std::string old = square().glb();
   old[4] = 1;

@@ -134,6 +134,7 @@ TEST_F(InfoCommand, CountsWhatLooksWrong) {
 
 TEST_F(InfoCommand, RepeatsTheModulesFindings) {
   manifest["lights"][0]["type"] = "directional";  // with a perspective shadow map
+  for (const char* key : {"innerConeAngle", "outerConeAngle", "range"}) manifest["lights"][0].erase(key);
   EXPECT_TRUE(has(info()["warnings"], "cannot be replayed: lights[0]"));
   manifest = writeSampleFiles(directory);
   manifest["lights"] = {{{"type", "point"}, {"position", {0, 0, 1000}}, {"range", 1}}};

@@ -125,6 +125,61 @@ protected:
   double fov_ = 0;
 };
 
+// Passes whose names hold those of other roles: denoisers' guides, mist, other light, other view layers, places.
+TEST(InitNames, PassesOfOtherContentAreNotTaken) {
+  const auto number = [](const std::string& name) { return ChannelGroup{"f.exr", 0, name, true, "", false, {name + ".Z"}}; };
+  const auto color = [](const std::string& name) {
+    return ChannelGroup{"f.exr", 0, name, true, "", false, {name + ".R", name + ".G", name + ".B"}};
+  };
+  struct Row {
+    std::vector<ChannelGroup> groups;
+    Role role;
+    const char* taken;  // empty: none
+  };
+  const Row rows[] = {{{number("Denoising Depth"), number("Depth")}, Role::FrontDepth, "Depth"},
+                      {{color("Denoising Albedo"), color("DiffCol")}, Role::Albedo, "DiffCol"},
+                      {{number("ViewLayer.Mist")}, Role::FrontDepth, ""},
+                      {{number("BG.Depth"), number("Char.Depth"), color("Char.DiffDir")}, Role::FrontDepth, "Char.Depth"},
+                      {{color("depth"), color("irradiance")}, Role::FrontDepth, "depth"},
+                      {{number("WorldDepth"), color("irradiance")}, Role::FrontDepth, "WorldDepth"},
+                      {{color("indirectDiffuse"), color("directDiffuse")}, Role::Irradiance, "directDiffuse"},
+                      {{color("VolumeLighting"), color("DiffuseLighting")}, Role::Irradiance, "DiffuseLighting"},
+                      {{color("P"), color("motion"), color("N")}, Role::Irradiance, ""}};
+  for (const Row& row : rows) {
+    const std::map<Role, Guess> guesses = guessRoles(row.groups, {});
+    const auto found = guesses.find(row.role);
+    EXPECT_EQ(found == guesses.end() ? "" : found->second.group.name, row.taken);
+  }
+  EXPECT_NE(guessRoles({color("diffuse_direct_key"), color("diffuse_direct_rim")}, {}).at(Role::Irradiance).doubt.find("_rim\" has the same name"),
+            std::string::npos);
+  EXPECT_EQ(guessRoles({number("WorldDepth"), color("irradiance")}, {}).at(Role::FrontDepth).metersPerUnit, 0.01);
+}
+
+// Ids that floats do not tell apart, and depths of a file of several parts.
+TEST_F(Init, LargeIdsAreRefused) {
+  const Image id = materialImage(5);
+  std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  channels.push_back({"id", &id, 0});
+  write("ids.exr", channels);
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  words.materialIds = {2000000001};
+  EXPECT_NE(refusalOf([&] { guess({"ids.exr"}, words); }).find("--material-id: 2000000001 is above 16777216"), std::string::npos);
+}
+
+// Transposed, a view matrix has its translation in the last column.
+TEST_F(Init, TransposedCamerasAreRefused) {
+  std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  Imath::M44f worldToCamera;
+  worldToCamera[0][3] = 50;
+  write("t.exr", channels, {{"worldToCamera", worldToCamera}});
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  EXPECT_NE(refusalOf([&] { guess({"t.exr"}, words); }).find("worldToCamera"), std::string::npos);
+}
+
 // One file of layers and OpenEXR's camera attributes, as Arnold and Nuke write them.
 TEST_F(Init, LayersWithOpenExrsCameraNeedNoWords) {
   const Image id = materialImage(1), albedo = constantImage({0.5f, 0.25f, 0.125f});
