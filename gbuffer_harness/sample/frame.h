@@ -1,4 +1,4 @@
-// A frame as this engine knows it.
+// A frame as this engine knows it: what pellucid_pass.h needs of an engine. Vulkan, GLM and Pellucid suffice for both.
 #pragma once
 
 #include <array>
@@ -7,15 +7,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "capture/capture.h"
-#include "common/device.h"
-#include "common/error.h"
 #include "pellucid/pellucid.h"
-#include "raster/render_target.h"
 
 namespace pellucid::sample {
-
-using namespace pellucid::harness;
 
 constexpr std::uint32_t kFramesInFlight = 3, kMostMaterials = 255, kMostLights = 6, kMostTiles = 16,
                         kShadowImages = 4;
@@ -31,14 +25,6 @@ struct ShadowTile {
   float biasConstant = 0, biasSlope = 0;  // as vkCmdSetDepthBias takes them
   float depthStep = 0;                    // of stored depths
 };
-
-// The layout of a depth buffer that shaders read; other images are in GENERAL throughout.
-constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-
-// Usages of buffers for whatever passes compute with.
-constexpr VkBufferUsageFlags kConstantsUsage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
 
 // The engine keeps images as views with their layouts, and lights by the names and units of
 // KHR_lights_punctual: both are Pellucid's types.
@@ -58,6 +44,9 @@ struct Frame {
   std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
   std::uint32_t gatherSamples = 8;     // of Pellucid
   bool ownQueue = false;  // Pellucid's commands have a submission of their own, between semaphores
+  // At least PellucidPass::sliceSize() bytes of a mapped buffer, uniform, storage and indirect, for this frame alone:
+  // the GPU still reads the slices of the frames in flight.
+  PellucidConstantsSlice constants{};
   // An image of that format and extent, usage SAMPLED | STORAGE, layout GENERAL, for this frame alone.
   std::function<PellucidImage(const PellucidImageNeed&)> transient;
 };

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "capture/write.h"
+#include "common/error.h"
 #include "common/png.h"
 #include "sample/renderer.h"
 #include "window/window.h"

@@ -1,21 +1,32 @@
-// Pellucid in this renderer: all of it. Copy the file; frame.h is the engine's own.
+// Pellucid in this renderer: all of it. Copy this file and frame.h, and fill a Frame from your engine's data.
 #pragma once
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
 #include "sample/frame.h"
 
 namespace pellucid::sample {
 class PellucidPass {
 public:
-  PellucidPass(Device& device, const std::vector<PellucidMaterial>& materials)
-      : materials_(materials),
-        ring_(device, kFramesInFlight * slice_, kConstantsUsage) {
+  PellucidPass(VkInstance instance, VkPhysicalDevice physicalDevice, VkDevice device,
+               const std::vector<PellucidMaterial>& materials)
+      : materials_(materials) {
     PellucidContextDesc desc;
     pellucidInitContextDesc(&desc);
-    desc.instance = device.instance(), desc.physicalDevice = device.physicalDevice();
-    desc.device = device.handle(), desc.getInstanceProcAddr = vkGetInstanceProcAddr, desc.message = report;
+    desc.instance = instance, desc.physicalDevice = physicalDevice, desc.device = device;
+    desc.getInstanceProcAddr = vkGetInstanceProcAddr, desc.message = report;
     desc.options.shadowViewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;  // cascades, atlas and cube are arrays
     require(pellucidCreateContext(&desc, &context_));
   }
+  PellucidPass(const PellucidPass&) = delete;
+  PellucidPass& operator=(const PellucidPass&) = delete;
   ~PellucidPass() { pellucidDestroyContext(context_); }
+
+  // Bytes of Frame::constants, a multiple of 256.
+  static VkDeviceSize sliceSize() { return pellucidGetConstantsSize(kMostMaterials, kMostLights, kMostTiles); }
 
   // Adds the diffuse light of pixels with a material to the color: after lighting, before antialiasing.
   void record(VkCommandBuffer commands, const Frame& f) {
@@ -57,26 +68,32 @@ public:
     if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));
     PellucidPlan plan;
     require(pellucidBuildPlan(&frame, nullptr, &plan));
-    const VkDeviceSize at = f.index % kFramesInFlight * slice_;  // the GPU still reads the other slices
-    if (!f.ownQueue) barrier(commands, kDrawing, kScope);
-    const PellucidConstantsSlice slice{ring_.handle(), at, slice_, static_cast<char*>(ring_.mapped()) + at};
-    require(pellucidWriteConstants(&plan, &frame, slice.mapped, slice_));
-    require(pellucidRecordPlan(context_, commands, &plan, &frame, &slice));
-    if (!f.ownQueue) barrier(commands, kScope, kDrawing);
+    require(pellucidWriteConstants(&plan, &frame, f.constants.mapped, f.constants.size));
+    if (!f.ownQueue) barrier(commands, kDrawing, kDrawn, PELLUCID_STAGES, PELLUCID_READS | PELLUCID_WRITES);
+    require(pellucidRecordPlan(context_, commands, &plan, &frame, &f.constants));
+    if (!f.ownQueue) barrier(commands, PELLUCID_STAGES, PELLUCID_WRITES, kDrawing, kDrawn | VK_ACCESS_SHADER_READ_BIT);
   }
 
 private:
-  static constexpr Scope kScope{PELLUCID_STAGES, PELLUCID_READS | PELLUCID_WRITES};
+  // The passes that draw inputs, and those that read the output.
+  static constexpr VkPipelineStageFlags kDrawing =
+      VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT |
+      VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
+  static constexpr VkAccessFlags kDrawn =
+      VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
+  static void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags written,
+                      VkPipelineStageFlags to, VkAccessFlags used) {
+    const VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr, written, used};
+    vkCmdPipelineBarrier(commands, from, to, 0, 1, &memory, 0, nullptr, 0, nullptr);
+  }
   static void report(void*, PellucidSeverity, const char* field, const char* sentence) {
     std::fprintf(stderr, "Pellucid: %s: %s\n", field, sentence);
   }
   static void require(PellucidResult result) {
-    if (result != PELLUCID_OK) throw DeviceError(std::string("Pellucid: ") + pellucidResultName(result));
+    if (result != PELLUCID_OK) throw std::runtime_error(std::string("Pellucid: ") + pellucidResultName(result));
   }
   static void put(const glm::dmat4& m, float (&to)[16]) { std::copy_n(&glm::mat4(m)[0][0], 16, to); }
   std::vector<PellucidMaterial> materials_;
-  VkDeviceSize slice_ = pellucidGetConstantsSize(kMostMaterials, kMostLights, kMostTiles);
-  HostBuffer ring_;
   PellucidContext* context_ = nullptr;
 };
 }  // namespace pellucid::sample

@@ -86,7 +86,10 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       compare_(device),
       submissions_(device),
       uniforms_(device, kFramesInFlight * kUniformSlice, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
-      pellucid_(device, scene.materials) {
+      pellucid_(device.instance(), device.physicalDevice(), device.handle(), scene.materials),
+      constants_(device, kFramesInFlight * PellucidPass::sliceSize(),
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) {
   for (std::size_t i = 0; i < kShadowImages; ++i)
     for (std::size_t layer = 0; layer < shadows_[i].layers(); ++layer)
       shadowPasses_[i].push_back(
@@ -193,6 +196,8 @@ void Renderer::makeFrame(const ViewCamera& camera) {
   for (std::size_t i = 0; i < f.ambient.size(); ++i) f.ambient[i] = toGlm(scene_.ambient[i]);
   f.gatherSamples = settings_.gatherSamples;
   f.ownQueue = settings_.pellucid && settings_.ownQueue;
+  const VkDeviceSize size = PellucidPass::sliceSize(), slice = next_ % kFramesInFlight * size;
+  f.constants = {constants_.handle(), slice, size, static_cast<char*>(constants_.mapped()) + slice};
   transients_.clear();
   pool_.nextFrame();  // keeps what the frames in flight use
   f.transient = [this](const PellucidImageNeed& need) {

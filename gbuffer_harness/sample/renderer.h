@@ -7,6 +7,8 @@
 #include <span>
 #include <tuple>
 
+#include "capture/capture.h"
+#include "common/barrier.h"
 #include "common/pool.h"
 #include "raster/render_target.h"
 #include "raster/draw.h"
@@ -20,6 +22,9 @@ namespace pellucid::sample {
 enum class Mistake : std::uint32_t { None, Fronts, Bias, Units, Gamma, AlbedoTwice, SpecularDiffused };
 inline const std::vector<std::string> kMistakes = {"none",  "culled-fronts", "depth-bias",       "units",
                                                    "gamma", "albedo-twice",  "specular-diffused"};
+
+// The layout of depth buffers that shaders read; other images are in GENERAL throughout.
+constexpr VkImageLayout kDepthRead = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
 struct Settings {
   bool pellucid = true;
@@ -98,6 +103,7 @@ private:
   Submissions submissions_;
   HostBuffer uniforms_;
   PellucidPass pellucid_;
+  HostBuffer constants_;  // of Pellucid, a slice for each frame in flight
   Settings settings_;
   Frame frame_;                    // the last one
   std::vector<const Light*> lit_;  // its lights

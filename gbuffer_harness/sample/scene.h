@@ -3,11 +3,14 @@
 
 #include <vector>
 
+#include "capture/capture.h"
 #include "raster/framing.h"
 #include "raster/view_camera.h"
 #include "sample/frame.h"
 
 namespace pellucid::sample {
+
+using namespace pellucid::harness;
 
 struct SceneLight {
   Light light;

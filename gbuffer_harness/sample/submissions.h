@@ -1,10 +1,13 @@
 // Commands of the frames in flight, and the order in which the device's queues run them.
 #pragma once
 
+#include "common/device.h"
 #include "common/owned.h"
 #include "sample/frame.h"
 
 namespace pellucid::sample {
+
+using namespace pellucid::harness;
 
 class Submissions {
 public:
