@@ -175,8 +175,8 @@ class Summary:
 
 def headline_table(*runs):
     summary = Summary(runs)
-    table = summary.heading() + header("whole frame", "head, us", "face that fills the screen, us",
-                                       "nothing on screen, us", "error in red", "mean FLIP")
+    table = summary.heading() + header("method", "head, us", "face that fills the screen, us",
+                                       "no skin on screen, us", "error in red", "mean FLIP")
     for name in (MODULE, "Jimenez 2010 + 2015, 11 taps", "HDRP, 20 samples"):
         times = "".join(summary.time(frame, name) for frame in ("portrait", "closeup", "nothing"))
         table += f"| {name} |{times}{summary.error(name)}\n"

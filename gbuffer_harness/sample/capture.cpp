@@ -44,9 +44,11 @@ Capture Renderer::capture() {
       map.depth = {cropped(layer, map.offset[0], map.offset[1], size, size), PELLUCID_DEPTH_DEVICE};
       map.clipFromWorld = fromGlm(t.clipFromWorld);
       map.backFaces = t.frontsCulled && !fronts;
-      map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
-      map.depthBiasSlope = static_cast<double>(t.biasSlope);
-      map.depthStep = static_cast<double>(t.depthStep);
+      if (!fronts) {
+        map.depthBiasConstant = static_cast<double>(t.biasConstant * t.depthStep);
+        map.depthBiasSlope = static_cast<double>(t.biasSlope);
+        map.depthStep = static_cast<double>(t.depthStep);
+      }
       // A manifest has one array of layers: the cube's follow the cascades.
       map.sharedImage = t.image == kAtlas;
       map.layer = static_cast<int>(t.layer + (t.image == kCube ? shadows_[kCascades].layers() : 0));

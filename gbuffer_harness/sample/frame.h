@@ -13,14 +13,15 @@ namespace pellucid::sample {
 
 constexpr std::uint32_t kFramesInFlight = 3, kMostMaterials = 255, kMostLights = 6, kMostTiles = 16,
                         kShadowImages = 4;
-// Arrays of layers. kFronts has the tiles of kAtlas with front faces, for Pellucid alone: Frame::hasFronts.
+// Arrays of layers. kFronts has the tiles of kAtlas with front faces and without bias, for Pellucid alone: Frame::hasFronts. Culled
+// cascades and cubes would need such an image each.
 enum ShadowImage : std::uint32_t { kCascades, kAtlas, kCube, kFronts };
 
 // A square of one of the shadow images. Depths are reversed: 1 is near.
 struct ShadowTile {
   std::uint32_t image = kCascades, layer = 0, x = 0, y = 0, size = 0;  // texels
   glm::dmat4 clipFromWorld{1};
-  double texel = 0;  // its side in scene units, per clip w
+  double texel = 0;  // side of a texel in scene units at clip w 1
   bool frontsCulled = false;
   float biasConstant = 0, biasSlope = 0;  // as vkCmdSetDepthBias takes them
   float depthStep = 0;                    // of stored depths
@@ -42,7 +43,7 @@ struct Frame {
   bool hasFronts = false;
   bool hasAmbient = false;
   std::array<glm::vec3, 9> ambient{};  // coefficients of radiance
-  std::uint32_t gatherSamples = 8;     // of Pellucid
+  std::uint32_t gatherSamples = 8;
   bool ownQueue = false;  // Pellucid's commands have a submission of their own, between semaphores
   // At least PellucidPass::sliceSize() bytes of a mapped buffer, uniform, storage and indirect, for this frame alone:
   // the GPU still reads the slices of the frames in flight.

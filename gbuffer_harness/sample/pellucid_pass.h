@@ -41,7 +41,7 @@ public:
     put(f.viewFromWorld, frame.viewFromWorld);
     std::copy_n(&f.lookedAt[0], 4, frame.options.anchor);  // noise stays with the body as it moves on the screen
     frame.metersPerUnit = f.metersPerUnit, frame.preExposure = f.preExposure;
-    frame.frontDepth = f.depth, frame.backDepth = f.backDepth;
+    frame.frontDepth = f.depth, frame.backDepth = f.backDepth;  // no view, if all maps hold front faces
     frame.albedo = f.albedo, frame.irradiance = f.irradiance;
     frame.material = f.surface, frame.output = f.color;
     frame.options.materialMask = 0xFF0000, frame.options.materialShift = 16;  // beside roughness
@@ -52,11 +52,12 @@ public:
     frame.lightCount = static_cast<uint32_t>(f.lights.size()), frame.lights = f.lights.data();
     std::vector<PellucidShadowMap> maps;
     for (const ShadowTile& t : f.tiles) {
-      const bool fronts = f.hasFronts && t.image == kAtlas;  // a second map of front faces, beside the engine's
+      const bool fronts = f.hasFronts && t.image == kAtlas;  // a second map of front faces without bias, beside the engine's
       maps.push_back({fronts ? kFronts : t.image, {t.size, t.size}, PELLUCID_DEPTH_DEVICE});
       put(t.clipFromWorld, maps.back().clipFromWorld);
       maps.back().options = {.offset = {t.x, t.y}, .layer = t.layer, .backFaces = t.frontsCulled && !fronts};
-      maps.back().options.depthBiasConstant = t.biasConstant * t.depthStep;  // factors of vkCmdSetDepthBias
+      if (fronts) continue;
+      maps.back().options.depthBiasConstant = t.biasConstant * t.depthStep;  // factors of vkCmdSetDepthBias; D32: 2^-24
       maps.back().options.depthBiasSlope = t.biasSlope, maps.back().options.depthStep = t.depthStep;
     }
     frame.shadowMapCount = static_cast<uint32_t>(maps.size()), frame.shadowMaps = maps.data();
@@ -65,7 +66,7 @@ public:
     uint32_t count = std::size(needs);
     require(pellucidGetImageNeeds(&frame, &count, needs));
     for (uint32_t i = 0; i < count; ++i) frame.transients[i] = f.transient(needs[i]);
-    if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));
+    if (f.index == 0) require(pellucidValidateFrame(&frame, report, nullptr));  // in debug builds each frame
     PellucidPlan plan;
     require(pellucidBuildPlan(&frame, nullptr, &plan));
     require(pellucidWriteConstants(&plan, &frame, f.constants.mapped, f.constants.size));
@@ -75,7 +76,7 @@ public:
   }
 
 private:
-  // The passes that draw inputs, and those that read the output.
+  // The passes that draw inputs, and those that read the output. Compute passes among them add COMPUTE_SHADER and SHADER_WRITE.
   static constexpr VkPipelineStageFlags kDrawing =
       VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT |
       VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;

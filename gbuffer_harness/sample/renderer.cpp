@@ -77,7 +77,7 @@ Renderer::Renderer(Device& device, const Scene& scene, VkExtent2D extent, std::u
       shadows_{{{device, {mapTexels, mapTexels}, kShadowDepth, kCascadeCount},
                 {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kShadowDepth, 1},
                 {device, {mapTexels, mapTexels}, kShadowDepth, kCubeFaces},
-                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kShadowDepth, 1}}},
+                {device, {mapTexels * kAtlasColumns, mapTexels * kAtlasColumns}, kDepth, 1}}},
       pool_(device),
       layout_(device, bindings(), {kStages, 0, sizeof(DrawConstants)}),
       lighting_(device),
@@ -307,8 +307,9 @@ void Renderer::drawScene(VkCommandBuffer commands, const DrawPass& pass, const g
 }
 
 void Renderer::drawShadows(VkCommandBuffer commands) {
-  vkCmdSetDepthBias(commands, -settings_.biasConstant, 0, -settings_.biasSlope);
-  for (std::uint32_t image = 0; image < kShadowImages; ++image)
+  for (std::uint32_t image = 0; image < kShadowImages; ++image) {
+    const float biased = image == kFronts ? 0.0f : 1.0f;
+    vkCmdSetDepthBias(commands, -biased * settings_.biasConstant, 0, -biased * settings_.biasSlope);
     for (std::uint32_t layer = 0; layer < shadowPasses_[image].size(); ++layer) {
       if (image == kFronts && !frame_.hasFronts) continue;
       const DrawPass& pass = *shadowPasses_[image][layer];
@@ -322,6 +323,7 @@ void Renderer::drawShadows(VkCommandBuffer commands) {
       }
       vkCmdEndRenderPass(commands);
     }
+  }
 }
 
 void Renderer::drawGbuffer(VkCommandBuffer commands) {
