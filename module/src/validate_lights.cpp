@@ -166,7 +166,7 @@ void warnOfShadowMaps(const FrameFacts& facts, Findings& out) {
     const PellucidLight& l = facts.light(i);
     if (facts.holdsBackFaces(l))
       out.warning(Field("shadowMaps[", l.firstShadowMap, "].options.backFaces"), "is 1: lights[",
-                  facts.lights.active[i], "] takes its thickness from backDepth and is not gathered");
+                  facts.lights.active[i], "] takes its thickness from backDepth and is not gathered; a map of front faces would be");
     for (uint32_t k = 0; k < l.shadowMapCount; ++k) {
       const uint32_t map = l.firstShadowMap + k;
       const PellucidShadowMap& s = f.shadowMaps[map];
