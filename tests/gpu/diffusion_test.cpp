@@ -245,6 +245,26 @@ Capture textured(Capture c) {
   return c;
 }
 
+// In place, too, where the base level copies the irradiance; with and without light that is gathered.
+TEST_F(Diffusion, AlphaIsTheIrradiances) {
+  Capture c = flatCapture(48, 32, 4);
+  Image irradiance(48, 32, 4);
+  for (size_t i = 0; i < irradiance.pixels(); ++i) {
+    std::copy_n(&c.irradiance.data[3 * i], 3, &irradiance.data[4 * i]);
+    irradiance.data[4 * i + 3] = i % 3 == 0 ? 0.25f : 0.5f;
+  }
+  c.irradiance = irradiance;
+  for (const bool lit : {false, true})
+    for (const bool inPlace : {false, true}) {
+      if (lit) c.lights = {backLight()}, c.lights[0].shadowMaps = {flatShadowMap(-14, PELLUCID_DEPTH_VIEW_Z)};
+      ReplaySettings s = lit ? gathering(8) : diffusionOnly();
+      s.aliasOutput = inPlace;
+      const Image out = replay(c, testMaterial(), s);
+      for (size_t i = 0; i < out.pixels(); ++i)
+        ASSERT_EQ(out.data[4 * i + 3], irradiance.data[4 * i + 3]) << i << " lit " << lit << " in place " << inPlace;
+    }
+}
+
 // The view shows the input of the diffusion: without translucency, no light comes through.
 TEST_F(Diffusion, ViewOfItsInputIsTheIrradiance) {
   Capture c = textured(flatCapture(48, 48));

@@ -268,6 +268,16 @@ PellucidMaterialDesc physiological(double melanin, double hemoglobin) {
   return desc;
 }
 
+// Donner & Jensen 2006, equations 1 and 2: eumelanin absorbs 1.3 times as much as pheomelanin in blue, and 2.2 times in red.
+TEST(Skin, EumelaninIsDarkerThanPheomelanin) {
+  PellucidMaterialDesc desc = physiological(0.05, 0.005);
+  desc.melaninType = 0;
+  const PellucidMaterial pheomelanin = compile(desc).material;
+  desc.melaninType = 1;
+  const PellucidMaterial eumelanin = compile(desc).material;
+  for (int c = 0; c < 3; ++c) EXPECT_LT(eumelanin.reflectance[c], 0.9f * pheomelanin.reflectance[c]) << c;
+}
+
 TEST(Material, SkinByPhysiology) {
   const Compiled light = compile(physiological(0.002, 0.005)), dark = compile(physiological(0.2, 0.005)),
                  flushed = compile(physiological(0.002, 0.05));
