@@ -37,7 +37,7 @@ ivec2 loaded(int i) {
 
 float depthAt(int place) { return uintBitsToFloat(surfaces[place].x); }
 
-// The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0: it interpolates level 2.
+// The quadratic B-spline at -1, 0 and 1 for a point at most half a texel from 0. It spreads level 2 by a variance of 1/4.
 vec3 spline(float at) {
   return vec3(0.5 * (0.5 - at) * (0.5 - at), 0.75 - at * at, 0.5 * (0.5 + at) * (0.5 + at));
 }
@@ -70,7 +70,7 @@ void addProbesToPlane(ivec2 top, int side, inout vec3 column[4]) {
 }
 
 // A pixel that is half of its side off a probe's tangent plane is not of the probe's surface: the plane crosses another pixel.
-const float kPerPixelOff = 2.0;
+const float kHalvesPerPixel = 2.0;
 
 // Halves of a pixel from a probe's tangent plane to a surface at `front` in a pixel.
 float offPlane(ProbePlace p, ivec2 probePixel, ivec2 pixel, float front) {
@@ -81,7 +81,7 @@ float offPlane(ProbePlace p, ivec2 probePixel, ivec2 pixel, float front) {
   vec2 steps = -vec2(dot(p.normal.xy, sideX), dot(p.normal.xy, sideY)) / facing;
   // Pixels have a size in front of the eye.
   float perSide = inversesqrt(max(dot(sideX, sideX), 1.0e-30));
-  return (front - p.front - dot(steps, vec2(pixel - probePixel))) * -facing * kPerPixelOff * perSide;
+  return (front - p.front - dot(steps, vec2(pixel - probePixel))) * -facing * kHalvesPerPixel * perSide;
 }
 
 // Adds what is linear between the four probes around the pixel, as far as they are of its material and it lies on their planes.
@@ -97,7 +97,7 @@ vec3 withProbes(vec3 diffused, ivec2 pixel, int side, float front, uint material
     ProbePlace p = unpackPlace(probes[i]);
     if (p.material != material) continue;
     float off = offPlane(p, pixelInCell(cell, side, p.index), pixel, front);
-    // The floors leave a pixel without a like neighbor the most alike.
+    // The floors keep the sum above 0: where no probe is of this surface, all four count by nearness.
     float weight = (exp2(-off * off) + 1.0e-4) * (linear.x * linear.y + 1.0e-4);
     added += weight * addedOf(probes[i]);
     returned += weight * returnedOf(probes[i]);
@@ -160,7 +160,7 @@ void diffusePlane(ivec2 first, ivec2 local, int texel) {
     [[unroll]] for (int i = 0; i < 4; ++i) written[i].rgb = sanitize(written[i].rgb * albedoAt(inImage(top + ivec2(0, i))));
   if (adds(last))
     [[unroll]] for (int i = 0; i < 4; ++i) written[i] = onHeld(inImage(top + ivec2(0, i)), written[i].rgb);
-  [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, inImage(top + ivec2(0, i)), vec4(asStored(written[i].rgb), written[i].a));
+  [[unroll]] for (int i = 0; i < 4; ++i) imageStore(destinationImage, inImage(top + ivec2(0, i)), vec4(asStored(written[i].rgb, last), written[i].a));
 }
 
 // ---- Edges: texels of level 2 that are no plane, or whose neighbors are none

@@ -126,13 +126,13 @@ void listEntryGroups(uint map, uint block, int row, float nearest, float farthes
   EntriesInReach reach = entriesInReach(map, block, nearest, farthest);
   ivec2 last = maps[map].place.zw - 1;
   if (any(isnan(reach.entries))) reach = EntriesInReach(vec4(vec2(0.0), vec2(last)), ivec2(0, PELLUCID_ENTRY_LEVELS - 1));
-  reach.entries += vec4(-1.0, -1.0, 1.0, 1.0); // probes beside a seam read the border
   // Far outside stays outside after the conversion. Below, groups are within the map whatever a NaN would convert to.
-  ivec4 within = ivec4(floor(clamp(reach.entries, vec4(-1.0), vec4(last + 1, last + 1))));
-  if (any(greaterThan(within.xy, last)) || any(lessThan(within.zw, ivec2(0)))) return;
-  within = ivec4(max(within.xy, ivec2(0)), min(within.zw, last));
+  const int kOutside = 3 << PELLUCID_ENTRY_LEVELS;
+  ivec4 within = ivec4(floor(clamp(reach.entries, vec4(-kOutside), vec4(last + kOutside, last + kOutside))));
   for (int level = reach.levels.x; level <= reach.levels.y; ++level) {
-    ivec4 groups = (within >> level) / PELLUCID_ENTRY_POINTS_GROUP;
+    ivec4 around = within + ivec4(-2, -2, 2, 2) * (1 << level); // besideHair of probe_light.glsl reads entries two away
+    if (any(greaterThan(around.xy, last)) || any(lessThan(around.zw, ivec2(0)))) continue;
+    ivec4 groups = (ivec4(max(around.xy, ivec2(0)), min(around.zw, last)) >> level) / PELLUCID_ENTRY_POINTS_GROUP;
     if (row >= groups.y && row <= groups.w) listGroupsInRow(map, uint(level), uint(row), groups.x, groups.z);
   }
 }

@@ -72,7 +72,7 @@ vec4 stretched(ivec2 texel, uint level, Texel own, Foreshortening f) {
   vec2 ray = facingRayAt(pixelOf(level, texel));
   TangentPlane plane = tangentPlane(own.slope, ray, inverseSpread(own.slope, ray, size));
   // The weight of the next texels. A narrow Gaussian at texels' centers alone has next to none of its variance; two taps
-  // beside one have all of it, up to where both are alike.
+  // beside one have all of it, up to where both are alike: taps of .17 have a variance of 1/4, a Gaussian of .28 has that weight.
   float next = max(exp(-0.5 / variance), min(0.5 * variance / (1.0 - min(variance, 0.5)), 0.17));
   int reach = min(int(ceil(3.0 * sqrt(variance))), kReach); // three standard deviations
   for (int i = 1; i <= reach; ++i) {
@@ -104,7 +104,7 @@ struct Own {
   Foreshortening foreshortening;
 };
 
-// The function has no branches, so that the invocation waits for memory once.
+// All texels load before this function, except the stretch's, so that the invocation waits for memory once.
 Own ownPart(uint level, ivec2 texel, uvec4 bits) {
   Own own;
   own.texel = unpackTexel(bits);

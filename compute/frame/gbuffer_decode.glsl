@@ -6,7 +6,7 @@
 // The word that options.materialShift and materialMask take the index from; `texel`: of the material image.
 uint decodeMaterial(uvec4 texel) { return texel.x; }
 
-// Depth in the encoding of the frame, from the first channel of the front or back depth.
+// Depth in the encoding of the frame, from the first channel of the front or back depth. Thicknesses (mm) do not pass through here.
 float decodeDepth(float stored) { return stored; }
 
 #endif

@@ -166,7 +166,7 @@ void filterCells(ivec2 first, int side) {
   if (returned) someReturned = 1u;
   barrier();
   bool shares = someLight != 0u;
-  // A material of another frame's list has no constants.
+  // Probes kept from another frame may name a material that this frame's list lacks: the index is checked before it addresses.
   uint material = own.z & 0xFFu;
   if (shares && material != 0u && material <= frame.flags.y) {
     float mm = frame.camera.range.w;

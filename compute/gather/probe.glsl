@@ -22,7 +22,7 @@ const uvec4 kNoProbe = uvec4(0u);
 const float kReturnedSteps = 255.0; // of -1..1; 0 is exact
 
 uvec4 withAdded(uvec4 bits, vec3 added) {
-  // Next to nothing counts as nothing, so that bits say which probes have no light.
+  // Below 1e-7, where halves have a bit or two left, counts as nothing, so that bits say which probes have no light.
   added = mix(vec3(0.0), clamp(added, vec3(-kLargestHalf), vec3(kLargestHalf)), greaterThan(abs(added), vec3(1.0e-7)));
   return uvec4(packHalves(added, bits.y >> 16), bits.zw);
 }

@@ -55,6 +55,7 @@ vec3 gatherReflected(vec3 inverse3d, float near, float far) {
 
 // How much further than the nearest point of the lit surface the share u of the samples lies, at most:
 // exponential, of a length that grows with u from the material's shortest to its longest. u < 1.
+// Infinite at u = 1, the end of the last ring, which kLastRing replaces.
 float gatherSpread(vec4 lengths, float u) { return -log(1.0 - u) * lengths.x * exp2(lengths.y * u); }
 
 // Square of the radius around a foot at distance t where the distance is t + spread.

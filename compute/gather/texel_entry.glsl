@@ -204,7 +204,7 @@ ShadowTexels drawnTexels(EntryMapConstants map, ivec2 texel, ShadowTexels stored
 
 // ---- Biases. A texel's point is where its light ray meets the surface that front or back depths show there
 
-// Largest slope of a surface towards the light: 87 degrees, where less than 5 % of the light comes in.
+// Least cosine between a surface's normal and the light ray: at 87 degrees, less than 5 % of the light comes in.
 const float kLeastAlong = 0.05;
 
 // The larger change of the stored device depth from texel to texel on a plane through a point, which the rasterizer's slope bias

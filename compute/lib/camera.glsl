@@ -78,7 +78,7 @@ vec2 squaredPixelSize(Camera camera, float p) {
 // These lengths in mm.
 vec2 pixelSize(Camera camera, float p) { return sqrt(squaredPixelSize(camera, p)) * camera.range.w; }
 
-// ---- Camera-space thickness: how far the view ray runs inside the object. Scene units; -1: unknown
+// ---- Camera-space thickness: how far the view ray runs inside the object. Scene units; below 0: unknown
 
 // Planar difference of two device depths. Subtracting in depth space first keeps every bit the depth
 // buffer has: p1 - p2 = (d1 - d2) (AD - BC) / ((C d1 - A)(C d2 - A)).

@@ -62,7 +62,7 @@ bool shadowHolds(uvec4 meta, float stored) {
   return isWithin(stored, 0.0, kNoDepth) && stored != 0.0;
 }
 
-const float kNearRounding = 1.0e-7; // of device depths, besides the map's smallest step
+const float kNearRounding = 1.0e-7; // of device depths, besides the map's smallest step: 1.7 steps of floats below 1
 
 // True where the texel lies on the map's near plane. Engines clamp there what lies before it ("pancaking"): something nearer is lit,
 // and nobody knows where. meta, offsets: of ShadowConstants.
@@ -78,7 +78,7 @@ struct DrawnDepth {
   float uncertain; // how far it may be off
 };
 
-// Part of a slope that the nearer neighbor may miss: between the last texels before a sphere's limb it is 27 %.
+// Part of a step of depth that the nearer neighbor may miss: between the last texels before a sphere's limb it is 27 % of the slope there.
 const float kMissedSlope = 0.3;
 
 // A texel's change of depth along an axis, x: to the nearer of its two neighbors, as the other may lie across an edge;
@@ -150,7 +150,7 @@ float lengthPerDepth(StoredRay ray, float stored) {
 // ---- What lies behind the surface that a map stores: the receiver's own medium, another body, or air. Functions take texels of
 // the optional images beside the map; see PellucidShadowMap.
 
-// depthTolerance ends at the largest slope of one surface, kSteepest of base_level.comp: at a cosine of .14. Only below .09 a receiver's
+// depthTolerance ends at a slope of 7, a cosine of .14. Only below .09 a receiver's
 // own exit can be farther off than this. More would hide gaps: 8 texels of a head's map of 1024 texels are 1.8 mm.
 const float kMostTexels = 8.0;
 

@@ -6,7 +6,7 @@
 // A pixel's surface. View space, scene units.
 struct Surface {
   vec3 position, normal, view; // unit: normal, outward; view, from the eye
-  float chord;                 // along the view ray, or the stored thickness; -1: unknown
+  float chord;                 // along the view ray, or the stored thickness; below 0: unknown
   uint material;               // index + 1
 };
 

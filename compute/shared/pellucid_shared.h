@@ -10,7 +10,7 @@
 #endif
 
 // Sides of workgroups and of what a group does.
-#define PELLUCID_GROUP_X 8
+#define PELLUCID_GROUP_X 8        // of groups without a side of their own
 #define PELLUCID_BLOCK 64         // pixels of a block, in which the image is divided from its first pixel on
 #define PELLUCID_BLOCK_BORDER 8   // pixels beyond the rect that blocks reach: a texel of level 3
 #define PELLUCID_CELL 8           // pixels of a cell: a block has a bit for each of its 8 x 8
@@ -90,6 +90,7 @@ PELLUCID_BINDINGS(PELLUCID_BINDING_NUMBER)
 #define PELLUCID_FLAG_HIDDEN_IRRADIANCE 8192u
 #define PELLUCID_FLAG_BODIES 16384u // probes say what bodies return of the diffused irradiance
 #define PELLUCID_FLAG_ADDS 4096u // the result is added to what the output holds
+#define PELLUCID_FLAG_PACKED_OUTPUT 32768u // B10G11R11: 6, 6 and 5 bits of mantissa
 
 // Specialization constants
 #define PELLUCID_CONSTANT_DEBUG_VIEWS 0

@@ -75,7 +75,7 @@ void main() {
     if (kDebugViews)
       imageStore(destinationImage, at, result);
     else if (keeps)
-      imageStore(destinationImage, at, vec4(asStored(result.rgb), 0.0));
+      imageStore(destinationImage, at, vec4(asStored(result.rgb, false), 0.0));
     else
       writeResult(at, result.rgb, result.a, pass.write == PELLUCID_WRITE_LAST);
   } else if (starts && inside) {

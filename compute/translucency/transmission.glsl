@@ -8,7 +8,8 @@
 //   float distanceOf(ivec2 pixel, uint material, bool back); // planar distance of the front or back depth of a pixel that has
 //                                                            // the material (index + 1); <= 0 of others
 //   vec3 hiddenIrradianceOf(ivec2 pixel); // what the image of that name holds, in a frame that has one
-// The shader requires GL_EXT_control_flow_attributes.
+// The shader requires GL_EXT_control_flow_attributes. Frames with light tables need specialization constant
+// PELLUCID_CONSTANT_LIGHT_TABLES (5) as true.
 #ifndef PELLUCID_TRANSMISSION_GLSL
 #define PELLUCID_TRANSMISSION_GLSL
 
@@ -356,7 +357,7 @@ Transmitted ambientTransmission(Surface s, ivec2 pixel, HiddenFace face) {
 
 // ---- Light through any surface
 
-// docs/integration.md, "Lights and shadow maps", says when each source is used. `pixel`: of the surface.
+// docs/how-it-works.md, "Light without a map of front faces", says when each source is used. `pixel`: of the surface.
 Transmitted lightTransmission(LightConstants light, Surface s, ivec2 pixel) {
   bool wall = isThinWalled(s.material), ambient = isAmbient(light), mapped = light.meta.z != 0u;
   // A sheet's T is the same at any thickness, and its reflectance is its own.

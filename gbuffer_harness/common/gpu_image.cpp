@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
+#include <limits>
 
 #include "common/error.h"
 #include "common/srgb.h"
@@ -51,11 +52,29 @@ Texel texelOf(VkFormat format) {
   }
 }
 
+// A float of 5 bits of exponent and `mantissa` bits, without sign. GLM's truncates, and has neither 0 nor denormals.
+glm::uint32 packSmallFloat(float v, int mantissa) {
+  if (std::isnan(v)) return (32u << mantissa) - 1;
+  if (!(v > 0)) return 0;
+  if (std::isinf(v)) return 31u << mantissa;
+  const float largest = std::ldexp(2.0f, 15) - std::ldexp(1.0f, 15 - mantissa);
+  v = std::min(v, largest);
+  const int exponent = std::max(std::ilogb(v), -14);
+  return static_cast<glm::uint32>(std::lround(std::ldexp(v, mantissa - exponent)) + ((exponent + 14L) << mantissa));
+}
+
+float unpackSmallFloat(glm::uint32 bits, int mantissa) {
+  const glm::uint32 exponent = bits >> mantissa & 31u, steps = bits & ((1u << mantissa) - 1);
+  if (exponent == 31) return steps == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+  const float value = static_cast<float>(exponent == 0 ? steps : steps + (1u << mantissa));
+  return std::ldexp(value, std::max(static_cast<int>(exponent), 1) - 15 - mantissa);
+}
+
 // Packs a texel of a format whose texels are one word; nullptr: another format.
 glm::uint32 (*packing(VkFormat format))(const glm::vec4&) {
   switch (format) {
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
-      return [](const glm::vec4& v) { return glm::packF2x11_1x10(glm::vec3(v)); };
+      return [](const glm::vec4& v) { return packB10G11R11(glm::vec3(v)); };
     case VK_FORMAT_E5B9G9R9_UFLOAT_PACK32:
       return [](const glm::vec4& v) { return glm::packF3x9_E1x5(glm::vec3(v)); };
     case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
@@ -69,7 +88,7 @@ glm::uint32 (*packing(VkFormat format))(const glm::vec4&) {
 glm::vec3 (*unpacking(VkFormat format))(glm::uint32) {
   switch (format) {
     case VK_FORMAT_B10G11R11_UFLOAT_PACK32:
-      return [](glm::uint32 word) { return glm::unpackF2x11_1x10(word); };
+      return unpackB10G11R11;
     case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
       return [](glm::uint32 word) { return glm::vec3(glm::unpackUnorm3x10_1x2(word)); };
     default:
@@ -99,6 +118,14 @@ VkBufferImageCopy wholeImage(int width, int height, int layer = 0) {
 }
 
 }  // namespace
+
+glm::uint32 packB10G11R11(const glm::vec3& c) {
+  return packSmallFloat(c.r, 6) | packSmallFloat(c.g, 6) << 11 | packSmallFloat(c.b, 5) << 22;
+}
+
+glm::vec3 unpackB10G11R11(glm::uint32 word) {
+  return {unpackSmallFloat(word, 6), unpackSmallFloat(word >> 11, 6), unpackSmallFloat(word >> 22, 5)};
+}
 
 GpuImage::GpuImage(Device& device, int width, int height, VkFormat format, VkImageUsageFlags more, int layers)
     : device_(device), width_(width), height_(height), format_(format) {

@@ -1,11 +1,17 @@
 // A 2D image with its view and memory, in VK_IMAGE_LAYOUT_GENERAL from its first upload or clear on.
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include "common/device.h"
 #include "common/image.h"
 #include "pellucid/pellucid.h"
 
 namespace pellucid::harness {
+
+// A texel of B10G11R11_UFLOAT_PACK32, to the nearest. Finite colors stay so, and what is below 0 becomes 0.
+glm::uint32 packB10G11R11(const glm::vec3& color);
+glm::vec3 unpackB10G11R11(glm::uint32 word);
 
 class GpuImage {
 public:

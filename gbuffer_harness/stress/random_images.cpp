@@ -99,8 +99,8 @@ View randomView(Random& random, bool wild, const FrameLimits& limits, Capture& c
   capture.width = v.width;
   capture.height = v.height;
   v.mm = (wild ? random.magnitude(1e-5, 1e4) : random.magnitude(0.02, 3)) / v.pixel;
-  v.mm = std::clamp(v.mm, 1e-5, 1e11);
-  if (wild && random.chance(0.1)) v.mm = random.magnitude(1e-5, 1e11);
+  v.mm = std::clamp(v.mm, 1.001e-3, 0.999e6);  // the domain of metersPerUnit
+  if (wild && random.chance(0.1)) v.mm = random.magnitude(1.001e-3, 0.999e6);
   capture.metersPerUnit = v.mm / 1000;
   Matrix& m = capture.clipFromView = {};
   m[0] = v.fx;

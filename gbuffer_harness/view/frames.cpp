@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "capture/material.h"
+#include "common/gpu_image.h"
 #include "metrics/spots.h"
 #include "raster/rasterizer.h"
 #include "replay/exposure.h"
@@ -59,7 +60,7 @@ void store(float* rgb, VkFormat format) {
   if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
     for (int c = 0; c < 3; ++c) rgb[c] = glm::unpackHalf1x16(glm::packHalf1x16(rgb[c]));
   if (format != VK_FORMAT_B10G11R11_UFLOAT_PACK32) return;
-  const glm::vec3 packed = glm::unpackF2x11_1x10(glm::packF2x11_1x10({rgb[0], rgb[1], rgb[2]}));
+  const glm::vec3 packed = unpackB10G11R11(packB10G11R11({rgb[0], rgb[1], rgb[2]}));
   for (int c = 0; c < 3; ++c) rgb[c] = packed[c];
 }
 

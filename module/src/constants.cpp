@@ -159,6 +159,7 @@ shared::FrameConstants frameConstants(const FrameFacts& facts, const PlanState& 
   if (facts.diffuses) flags |= PELLUCID_FLAG_DIFFUSED;
   if (facts.diffuses && facts.stages.gathered > 0) flags |= PELLUCID_FLAG_BODIES;
   if (facts.wide) flags |= PELLUCID_FLAG_WIDE_OUTPUT;
+  if (f.options.outputFormat == VK_FORMAT_B10G11R11_UFLOAT_PACK32) flags |= PELLUCID_FLAG_PACKED_OUTPUT;
   if (f.options.addToOutput == 1) flags |= PELLUCID_FLAG_ADDS;
   if (facts.thinWalls) flags |= PELLUCID_FLAG_THIN_WALLS;
   c.flags = {flags, f.materialCount, f.options.debugView, t.angleModel};

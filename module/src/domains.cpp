@@ -38,7 +38,7 @@ bool isGaussian(const void* object, uint32_t index) {
 #define FIELD(Struct, name) #name, offsetof(Struct, name), sizeof(static_cast <Struct*>(nullptr)->name) / 4
 
 constexpr auto kFrameFloats = std::to_array<FloatDomain>({
-    {FIELD(PellucidFrame, metersPerUnit), 1e-9F, 1e9F},
+    {FIELD(PellucidFrame, metersPerUnit), 1e-6F, 1e3F},
     {FIELD(PellucidFrame, clipFromView), -kLongest, kLongest},
     {FIELD(PellucidFrame, viewFromWorld), -kLongest, kLongest},
     {FIELD(PellucidFrame, options.coherenceThreshold), 0, 2},

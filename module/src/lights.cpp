@@ -135,12 +135,12 @@ Lights::Lights(const Setup& setup, Findings& out) {
     return map.options.exitImage == 0 && map.options.casterMaterialImage == 0;
   };
   if (std::all_of(frame.shadowMaps, frame.shadowMaps + frame.shadowMapCount, hasNothing)) return;
-  // At most: base level, two dispatches that downsample, upsample, two that diffuse, history.
-  constexpr uint32_t kOthers = 7;
+  // Base level, downsample, coarse levels, upsample and diffuse; add history, which no frame with a gather has.
+  const uint32_t others = gathered > 0 ? 5 : 6;
   // Debug views of light need all lights in one dispatch.
   const bool binds = setup.debug() && frame.options.debugView != PELLUCID_DEBUG_IRRADIANCE
                          ? count <= 1
-                         : fused() + gatherDispatches() + walls + kOthers <= PELLUCID_MAX_DISPATCHES;
+                         : fused() + gatherDispatches() + walls + others <= PELLUCID_MAX_DISPATCHES;
   if (!binds) group(setup, false);
 }
 

@@ -85,7 +85,7 @@ void checkFields(const Inputs& inputs, Findings& out) {
   if (f.options.gatherSamples > 64 || f.options.gatherSamples % 4 != 0)
     out.error("options.gatherSamples", "is ", f.options.gatherSamples, "; needs a multiple of 4, at most 64");
 
-  // 255: the material image is r8ui and 0 means none.
+  // Blocks, texels and probes hold the index in 8 bits, and 0 means none.
   if (f.materialCount == 0 || f.materialCount > 255 || !f.materials)
     out.error("materials", "has ", f.materialCount, f.materials ? "" : " at NULL", "; needs 1..255");
   checkMaterialBits(inputs, out);

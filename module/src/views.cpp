@@ -36,6 +36,8 @@ const char* useOf(uint32_t uses) {
 
 // Refuses plans that ask for another context.
 void checkContext(const PellucidContext& c, const PellucidPlan& plan, Findings& out) {
+  if (plan.dispatchCount > PELLUCID_MAX_DISPATCHES)
+    return out.error("plan", "has ", plan.dispatchCount, " dispatches; needs at most ", static_cast<int>(PELLUCID_MAX_DISPATCHES));
   const PlanState state = stateOf(plan);
   if (c.desc.options.outputFormat != VK_FORMAT_UNDEFINED && c.desc.options.outputFormat != state.outputFormat)
     return out.error("options.outputFormat",

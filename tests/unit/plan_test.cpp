@@ -553,6 +553,16 @@ TEST(Plan, ImagesBesideMapsAreLeftOutWhereTheyAreTooMany) {
   }
 }
 
+// docs/integration.md, "Limits".
+TEST(Plan, ImagesBesideFiftyTwoMapsFit) {
+  for (const uint32_t lights : {52u, 53u}) {
+    Frame f(lights);
+    addImagesBeside(f);
+    f.frame.options.gatherSamples = 8;
+    EXPECT_EQ(skipped(f.plan(), "exit depth and caster material"), lights > 52 ? 1u : 0u) << lights;
+  }
+}
+
 // Of a shader's workgroups, as its SPIR-V states it: columns, rows.
 std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
   PellucidShader shader{};
@@ -563,6 +573,38 @@ std::array<uint32_t, 2> workgroupOf(uint32_t pipeline) {
     if ((shader.words[i] & 0xFFFF) == kOpExecutionMode && shader.words[i + 2] == kLocalSize)
       return {shader.words[i + 3], shader.words[i + 4]};
   return {};
+}
+
+// Bytes of a shader's Workgroup variables.
+uint32_t sharedBytesOf(uint32_t pipeline) {
+  PellucidShader shader{};
+  EXPECT_EQ(pellucidGetShader(pipeline, VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_UNDEFINED, nullptr, &shader), PELLUCID_OK);
+  std::map<uint32_t, uint32_t> bytes, constants, pointees;  // by id
+  uint32_t total = 0;
+  for (size_t i = 5; i < shader.wordCount; i += shader.words[i] >> 16) {
+    const uint32_t* w = shader.words + i;
+    const uint32_t count = w[0] >> 16, op = w[0] & 0xFFFF;
+    if (op == 43) constants[w[2]] = w[3];                           // OpConstant
+    if (op == 20) bytes[w[1]] = 4;                                  // OpTypeBool
+    if (op == 21 || op == 22) bytes[w[1]] = w[2] / 8;               // OpTypeInt, OpTypeFloat
+    if (op == 23 || op == 24) bytes[w[1]] = bytes[w[2]] * w[3];     // OpTypeVector, OpTypeMatrix
+    if (op == 28) bytes[w[1]] = bytes[w[2]] * constants[w[3]];      // OpTypeArray
+    for (uint32_t member = 2; op == 30 && member < count; ++member)  // OpTypeStruct
+      bytes[w[1]] += bytes[w[member]];
+    if (op == 32) pointees[w[1]] = w[3];                      // OpTypePointer
+    if (op == 59 && w[3] == 4) total += bytes[pointees[w[1]]];  // OpVariable, Workgroup
+  }
+  return total;
+}
+
+// The context asks the device for 16 KiB (kSharedBytes of context.cpp).
+TEST(Plan, ShadersShareNoMoreMemoryThanTheContextAsksFor) {
+  uint32_t most = 0;
+  for (uint32_t pipeline = 0; pipeline < pellucidGetPipelineCount(); ++pipeline) {
+    EXPECT_LE(sharedBytesOf(pipeline), 16384u) << pellucidPipelineName(pipeline);
+    most = std::max(most, sharedBytesOf(pipeline));
+  }
+  EXPECT_GT(most, 8192u) << "shared memory was not counted";
 }
 
 // Groups that overlap would do pixels twice, and no pixel would say so.

@@ -245,6 +245,8 @@ const Refusal kRefusals[] = {
      "views[1].constants.size is 256; the plan needs", PELLUCID_ERROR_BUFFER_TOO_SMALL},
     {"PlanOfTheOtherView", [](View&, View& b, auto&) { b.f.frame.shadowImageCount = 0; },
      "views[1].shadowImages[0] has no view, but the plan binds it"},
+    {"MoreDispatchesThanAPlanHolds", [](View&, View& b, auto&) { b.plan.dispatchCount = 33; },
+     "views[1].plan has 33 dispatches; needs at most 32"},
     {"NoView", [](View&, View& b, auto&) { b.f.frame.material = {}; }, "views[1].material has no view"}};
 
 TEST_F(Views, RefusalsNameTheViewAndRecordNothing) {

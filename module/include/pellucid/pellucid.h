@@ -163,7 +163,7 @@ typedef struct PellucidFrame {
   /* Width and height in pixels of every screen-sized image, 1..65536. In frames that
    * diffuse, the rect with 8 pixels around touches at most 65535 blocks of 64 x 64 pixels. */
   uint32_t imageExtent[2];
-  /* Meters of a scene unit, 1e-9..1e9; default 1. */
+  /* Meters of a scene unit, 1e-6 (micrometers) to 1e3 (kilometers); default 1. */
   float metersPerUnit;
   /* The projection that rendered the depths, with its jitter. */
   float clipFromView[16];
