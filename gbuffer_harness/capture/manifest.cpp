@@ -205,7 +205,7 @@ ShadowSources readShadowSources(const Field& map, const BufferReader& read, int 
     sources.exit = read(*exit, 1);
   }
   if (const auto caster = map.find("casterMaterial")) {
-    caster->allowKeys({"file", "part", "channel", "constant", "map"});
+    caster->allowKeys({"file", "part", "channel", "constant", "map", "scale"});
     sources.casterMaterial = read(*caster, 1);
     if (const auto names = caster->find("map"))
       sources.casterMaterialMap = readMaterialMap(*names, materialCount);
@@ -420,7 +420,7 @@ void readBuffers(const Field& buffers, const BufferReader& read, Manifest& manif
   manifest.hasNormal = buffers.has("normal");
 
   const Field material = buffers["material"];
-  material.allowKeys({"file", "part", "channel", "map", "constant"});
+  material.allowKeys({"file", "part", "channel", "map", "constant", "scale"});
   manifest.material = read(material, 1);
   if (const auto map = material.find("map"))
     manifest.materialMap = readMaterialMap(*map, static_cast<int>(manifest.capture.materials.size()));
@@ -454,19 +454,25 @@ Harmonics readHarmonics(const Field& field) {
   return result;
 }
 
-// Maps with a layer share one array image; those with a size share the image of that part and channel.
+// Maps with a layer share one array image, each of whose layers is one image; those with a size share the image of that part and
+// channel.
 void numberSharedImages(const Field& lights, Manifest& manifest) {
   using Key = std::tuple<std::filesystem::path, int, std::vector<std::string>>;
   std::map<Key, int> numbers;
+  std::map<int, std::pair<Key, std::string>> layers;  // image and field of the first map
   const std::vector<Field> all = lights.items();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::vector<Field> maps = shadowMapsOf(all[i]);
     for (std::size_t k = 0; k < maps.size(); ++k) {
       const ShadowSources& sources = manifest.shadowMaps[i][k];
-      Key key;
-      if (!maps[k].has("layer")) {
-        if (!sources.tile) continue;
-        key = {sources.depth.file, sources.depth.part.value_or(-1), sources.depth.channels};
+      Key key = {sources.depth.file, sources.depth.part.value_or(-1), sources.depth.channels};
+      if (const auto layer = maps[k].find("layer")) {
+        const auto& [image, first] =
+            layers.emplace(manifest.capture.lights[i].shadowMaps[k].layer, std::pair(key, layer->path())).first->second;
+        if (image != key) layer->fail("is " + layer->shown() + ", as " + first + ", whose image is another; each layer is one image");
+        key = {};
+      } else if (!sources.tile) {
+        continue;
       }
       manifest.capture.lights[i].shadowMaps[k].sharedImage =
           numbers.emplace(key, static_cast<int>(numbers.size())).first->second;

@@ -205,8 +205,11 @@ std::vector<std::uint8_t> materialIndices(const Manifest& manifest, const Buffer
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (stored.data[i] == kOutside) continue;
     const float value = std::round(stored.data[i]);
-    // Halves and scaled bytes are off by less.
-    const bool isFiltered = std::abs(value - stored.data[i]) > 0.01f;
+    const float asByte = 255 * stored.data[i];
+    if (others == map.end() && asByte > 0.5f && asByte < 254.5f && std::abs(asByte - std::round(asByte)) < 0.1f)
+      fail(i, " = " + std::to_string(std::lround(asByte)) + "/255, a byte that was read as a fraction; give \"scale\": 255");
+    // Halves are off by a part in 4096.
+    const bool isFiltered = std::abs(value - stored.data[i]) > 0.01f + 2.5e-4f * std::abs(value);
     if (isFiltered && others == map.end()) fail(i, ", which is no whole number; images of materials must not be filtered");
     const bool isWhole = !isFiltered && std::abs(value) <= kMaxStoredMaterial;
     int index = isWhole ? static_cast<int>(value) : -1;

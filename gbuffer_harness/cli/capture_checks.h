@@ -15,4 +15,7 @@ namespace pellucid::harness {
 // of a half-space have none. `materials`: compiled.
 std::vector<std::string> thinBodies(const Capture& capture, const std::vector<PellucidMaterial>& materials);
 
+// A sentence for each light whose shadow maps contradict the G-buffer.
+std::vector<std::string> strangeMaps(const Capture& capture);
+
 }  // namespace pellucid::harness

@@ -289,7 +289,7 @@ Json describe(const std::filesystem::path& path) {
         "the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");
   checkConventions(capture, materials, warnings);
   checkPixels(capture, camera, warnings);
-  for (auto& sentences : {coarseTables(capture), thinBodies(capture, materials)})
+  for (auto& sentences : {strangeMaps(capture), coarseTables(capture), thinBodies(capture, materials)})
     warnings.insert(warnings.end(), sentences.begin(), sentences.end());
   json["warnings"] = warnings;
   return json;

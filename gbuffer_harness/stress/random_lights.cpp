@@ -200,8 +200,10 @@ Light randomLight(Random& random, bool wild, const Target& target, const glm::dv
   if (random.chance(0.75) && glm::length(target.center - position) > 0) addMaps(random, wild, target, light);
   if (random.chance(0.1))
     for (ShadowMap& map : light.shadowMaps) map.backFaces = true;
-  if (wild && random.chance(0.2))
-    for (double& d : light.direction) d *= random.magnitude(1e-10, 1e10);
+  if (wild && random.chance(0.2)) {
+    const double length = random.magnitude(1e-10, 1e10);
+    for (double& d : light.direction) d *= length;
+  }
   return light;
 }
 

@@ -12,6 +12,35 @@ namespace {
 
 constexpr uint32_t kMostTexels = 65536;
 
+constexpr double kRadian = 57.29577951308232;  // degrees
+// Between a light and its map, or both matrices of a map: more than engines that draw a sun's maps every few frames are behind.
+constexpr double kMostDegrees = 5;
+
+// Row of a matrix without its translation.
+glm::dvec3 rowOf(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], m[2][row]}; }
+
+// 0 where a vector is 0.
+double degreesBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  const double lengths = glm::length(a) * glm::length(b);
+  return lengths > 0 ? kRadian * std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0, 1.0)) : 0;
+}
+
+double degreesBetweenLines(const glm::dvec3& a, const glm::dvec3& b) {
+  const double degrees = degreesBetween(a, b);
+  return std::min(degrees, 180 - degrees);
+}
+
+// Engines' factors and numbers of steps, which the caller has not turned into device depths, exceed all that is sensible.
+void checkDeviceSteps(const PellucidShadowMap& s, const auto& field, Findings& out) {
+  constexpr float kMostBias = 0.5F, kMostStep = 0.1F;  // of depths from 0 to 1; a step of 8 bits is .004
+  if (s.encoding != PELLUCID_DEPTH_DEVICE) return;
+  if (std::abs(s.options.depthBiasConstant) > kMostBias)
+    out.error(field("options.depthBiasConstant"), "is ", s.options.depthBiasConstant,
+              ", over half of the range of device depths; needs the constant factor times 2^-16 (D16) or 2^-24");
+  if (s.options.depthStep > kMostStep)
+    out.error(field("options.depthStep"), "is ", s.options.depthStep, "; needs the smallest difference of device depths, as 1/65535");
+}
+
 void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
   const PellucidShadowMap& s = f.shadowMaps[index];
   const auto field = [index](const char* name) { return Field("shadowMaps[", index, "].", name); };
@@ -27,6 +56,14 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
     out.error(field("clipFromWorld"), "cannot be inverted");
   if (s.encoding != PELLUCID_DEPTH_DEVICE && !isRigid(toMatrix(s.options.viewFromWorld)))
     out.error(field("options.viewFromWorld"), "is not a rotation and translation, which this encoding needs");
+  checkDeviceSteps(s, field, out);
+  if (s.encoding != PELLUCID_DEPTH_DEVICE) {
+    // Depth grows along the view's z: device depth does in orthographic maps, clip w in perspective ones.
+    const glm::dmat4 clip = toMatrix(s.clipFromWorld);
+    const double apart = degreesBetweenLines(rowOf(toMatrix(s.options.viewFromWorld), 2), rowOf(clip, isPerspective(s) ? 3 : 2));
+    if (apart > kMostDegrees)
+      out.error(field("options.viewFromWorld"), "looks ", static_cast<float>(apart), " degrees off clipFromWorld: both belong to one camera at the light");
+  }
   const auto checkBeside = [&](const char* name, uint32_t image) {
     if (image > f.shadowImageCount)
       out.error(field(name), "is ", image, " (an index plus 1), but there are ", f.shadowImageCount,
@@ -66,6 +103,29 @@ void checkFalloff(const PellucidFrame& f, uint32_t index, Findings& out) {
   checkTable("distanceTable", l.distanceTable);
   if (l.distanceTable > 0 && l.range == 0)
     out.error(Field("lights[", index, "].range"), "is 0, but distanceTable is ", l.distanceTable);
+}
+
+// The light travels as its maps were drawn.
+void checkDirection(const PellucidFrame& f, uint32_t index, Findings& out) {
+  const PellucidLight& l = f.lights[index];
+  if (l.type == PELLUCID_LIGHT_POINT || l.shadowMapCount == 0) return;
+  const glm::dvec3 direction(l.direction[0], l.direction[1], l.direction[2]);
+  bool seen = false;
+  for (uint32_t i = l.firstShadowMap; i < l.firstShadowMap + l.shadowMapCount; ++i) {
+    const PellucidShadowMap& s = f.shadowMaps[i];
+    const glm::dmat4 clip = toMatrix(s.clipFromWorld);
+    seen = seen || glm::dot(rowOf(clip, 3), direction) > 0;
+    if (l.type != PELLUCID_LIGHT_DIRECTIONAL || isPerspective(s)) continue;
+    // Clip x and y stay the same along a ray. A device depth may grow to either side.
+    glm::dvec3 ray = glm::cross(rowOf(clip, 0), rowOf(clip, 1));
+    double apart = degreesBetweenLines(ray, direction);
+    if (s.encoding != PELLUCID_DEPTH_DEVICE && glm::dot(rowOf(toMatrix(s.options.viewFromWorld), 2), direction) > 0) apart = 180 - apart;
+    if (apart > kMostDegrees)
+      return out.error(Field("lights[", index, "].direction"), "is ", static_cast<float>(apart), " degrees off the rays of shadowMaps[", i,
+                       "], by its matrices; light travels along direction");
+  }
+  if (l.type == PELLUCID_LIGHT_SPOT && !seen)
+    out.error(Field("lights[", index, "].direction"), "points away from what the light's shadow maps show; light travels along direction");
 }
 
 void checkLight(const Setup& setup, uint32_t index, Findings& out) {
@@ -112,21 +172,22 @@ void checkLight(const Setup& setup, uint32_t index, Findings& out) {
                   ". clipFromWorld is column-major");
     }
   }
+  checkDirection(f, index, out);
   if (!fits)
     out.error(field("shadowMapCount"), "is ", l.shadowMapCount,
               ": their maps, exit depths and caster materials are more than the ",
               PELLUCID_SHADOW_IMAGE_COUNT, " images that a dispatch binds");
 }
 
+// Two lights may share a whole map.
 bool overlap(const PellucidShadowMap& a, const PellucidShadowMap& b) {
   if (a.image != b.image || a.options.layer != b.options.layer) return false;
   for (int i = 0; i < 2; ++i)
     if (a.options.offset[i] + a.extent[i] <= b.options.offset[i] ||
         b.options.offset[i] + b.extent[i] <= a.options.offset[i])
       return false;
-  // Two lights may share a whole map.
   return !std::equal(a.options.offset, a.options.offset + 2, b.options.offset) ||
-         !std::equal(a.extent, a.extent + 2, b.extent);
+         !std::equal(a.extent, a.extent + 2, b.extent) || !std::equal(a.clipFromWorld, a.clipFromWorld + 16, b.clipFromWorld);
 }
 
 void warnOfTiles(const PellucidFrame& f, Findings& out) {

@@ -96,6 +96,28 @@ TEST_F(Gather, IsTheSlabsTransmittance) {
     }
 }
 
+// A white channel decays over kilometers, which must not take the samples and the table of T from the others.
+TEST_F(Gather, IsTheSlabsTransmittanceBesideAWhiteChannel) {
+  PellucidMaterialDesc desc;
+  pellucidInitMaterialDesc(&desc);
+  for (int k = 0; k < 3; ++k) {
+    desc.scattering[k] = 1;
+    desc.absorption[k] = k == 0 ? 0.0 : 0.1 * k;
+  }
+  PellucidMaterial material;
+  ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
+  for (const double d : {0.5, 4.0}) {
+    Capture c = backlitSlab(d, PELLUCID_DEPTH_VIEW_Z);
+    for (float& v : c.irradiance.data) v = 0;
+    const Image out = replay(c, material, gathering(16));
+    for (int k = 0; k < 3; ++k) {
+      const double exact = 3 * pellucidEvaluateTransmittance(&material, static_cast<uint32_t>(k), d) / static_cast<double>(material.reflectance[k]);
+      // The map's 50 mm lack what a white medium spreads farther.
+      EXPECT_NEAR(static_cast<double>(out.at(4, 4)[k]), exact, 2 * kFitted * exact) << "d " << d << " channel " << k;
+    }
+  }
+}
+
 // Lit from the front: the camera sees what it sees, and beyond the image's edges lies more of the same.
 TEST_F(Gather, ConstantLightStaysConstant) {
   Capture c = flatCapture(8, 8, 2);

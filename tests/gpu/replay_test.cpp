@@ -339,6 +339,8 @@ TEST_F(Replay, ReuseOverATurningLight) {
         light.direction = {std::sin(angle), 0, std::cos(angle)};
         light.intensity = 1;
         light.shadowMaps = {flatShadowMap(-12, PELLUCID_DEPTH_VIEW_Z, 4)};
+        Matrix& clip = light.shadowMaps[0].clipFromWorld;
+        clip[8] = -clip[0] * std::tan(angle);  // sheared along the light
         c.lights.push_back(light);
       }
       c.albedo = Image(c.width, c.height, 3, kAlbedo);

@@ -161,7 +161,7 @@ inline nlohmann::json writeSampleFiles(const std::filesystem::path& directory) {
       "irradiance": {"file": "g.exr", "channels": ["E.R", "E.G", "E.B"]},
       "albedo": {"constant": [0.62, 0.38, 0.24]},
       "material": {"file": "g.exr", "channel": "id", "map": {"1": 1}}},
-    "lights": [{"type": "spot", "position": [0, 0, -9], "direction": [0, 0, 1], "color": [1, 1, 1], "intensity": 3,
+    "lights": [{"type": "spot", "position": [0, 0, -9], "direction": [0, 0, -1], "color": [1, 1, 1], "intensity": 3,
                 "range": 0, "innerConeAngle": 0.1, "outerConeAngle": 0.7,
                 "shadowMap": {"file": "s.exr", "channel": "ViewLayer.Depth.Z", "encoding": "distance",
                               "exit": {"file": "s.exr", "part": 0, "channel": "ViewLayer.Exit.Z"},

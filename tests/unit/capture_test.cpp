@@ -414,6 +414,32 @@ TEST_F(Manifests, LightMayBeAColorsMultipleOrPart) {
   expectNames(refusalOf([&] { read(); }), {"buffers.irradiance.includesAlbedo", "albedo"});
 }
 
+// Bytes of an 8-bit target, which a converter turned into fractions.
+TEST_F(Manifests, MaterialsMayBeFractionsOfBytes) {
+  const Capture whole = read();
+  Image fractions(kSampleWidth, kSampleHeight, 1);
+  for (std::size_t i = 0; i < whole.material.size(); ++i) fractions.data[i] = static_cast<float>(whole.material[i]) / 255;
+  writeExr(directory / "bytes.exr", fractions, {"R"});
+  json& material = manifest["buffers"]["material"];
+  material = {{"file", "bytes.exr"}, {"channel", "R"}};
+  expectNames(refusalOf([&] { read(); }), {"bytes.exr", "buffers.material", "= 1/255", "\"scale\": 255"});
+  material["scale"] = 255;
+  EXPECT_EQ(read().material, whole.material);
+}
+
+// Each layer of the array is one image: the image of another file would take the place of the first one.
+TEST_F(Manifests, LayersOfTwoFilesAreRefused) {
+  json& map = manifest["lights"][0]["shadowMap"];
+  map.erase("exit");
+  map.erase("casterMaterial");
+  map["layer"] = 0;
+  json second = manifest["lights"][0];
+  second["shadowMap"]["file"] = "other.exr";
+  manifest["lights"].push_back(second);
+  const std::size_t last = manifest["lights"].size() - 1;
+  expectNames(refusalOf([&] { read(); }), {"lights[" + std::to_string(last) + "].shadowMap.layer", "is 0", "lights[0].shadowMap.layer"});
+}
+
 // Engines store motion in pixels, in parts of the image or of clip space, upwards or downwards.
 TEST_F(Manifests, MotionIsInPartsOfTheImage) {
   EXPECT_TRUE(read().motion.empty());
@@ -566,7 +592,7 @@ constexpr const char* kRequired = R"(
 
 constexpr const char* kUnknown = R"(
 /exposure /camera/fov /buffers/albedo/layer /buffers/material/channels /lights/0/glow
-/lights/0/shadowMap/bias /lights/0/shadowMap/exit/encoding /lights/0/shadowMap/casterMaterial/scale
+/lights/0/shadowMap/bias /lights/0/shadowMap/exit/encoding /lights/0/shadowMap/casterMaterial/gain
 /lights/1/shadowMaps/0/bias /materials/0/name /truth/exposure
 )";
 
@@ -574,7 +600,7 @@ constexpr const char* kUnknown = R"(
 // not the changed one.
 constexpr const char* kMistakes = R"(
 /buffers/irradiance/scale | 0 | above 0
-/buffers/material/scale | 2
+/buffers/material/scale | 0 | above 0
 /buffers/backDepth | {"constant": [0.5], "encoding": "device", "scale": 2} | buffers.backDepth.scale | no unit
 /environment | [[1, 1, 1]] | needs 9 coefficients | has 1
 /environment | [[1, 1], 1, 1, 1, 1, 1, 1, 1, 1] | environment[0] | 3

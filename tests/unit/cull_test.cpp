@@ -229,11 +229,7 @@ TEST(Cull, FrontLightsAreDropped) {
   s.debugView = PELLUCID_DEBUG_NONE;
   s.translucency.angleModel = PELLUCID_ANGLE_NORMAL;
   s.translucency.gatherSamples = 8;
-  ShadowMap map;
-  map.clipFromWorld = {0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 0.01, 0, 0, 0, 0.5, 1};
-  map.depth.encoding = PELLUCID_DEPTH_DEVICE;
-  map.depth.image = Image(1, 1, 1, 0.5f);
-  view.capture.lights[0].shadowMaps = {map};
+  View::addMap(view.capture.lights[0]);
   EXPECT_EQ(reasonOf(view.capture, s), "");
 }
 

@@ -46,7 +46,7 @@ const std::vector<std::function<void(Frame&)>> kFrames = {
     [](Frame& f) {
       PellucidShadowMap& map = f.maps[0];
       map.encoding = PELLUCID_DEPTH_VIEW_Z;
-      for (int i = 0; i < 4; ++i) map.options.viewFromWorld[5 * i] = 1;
+      for (int i = 0; i < 4; ++i) map.options.viewFromWorld[5 * i] = i % 3 == 0 ? 1 : -1;  // along +z
       PellucidLight spot = Frame::light(0, 0);
       spot.type = PELLUCID_LIGHT_SPOT;
       spot.outerConeAngle = 0.5f;

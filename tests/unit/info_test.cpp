@@ -97,6 +97,29 @@ TEST_F(InfoCommand, WarnsOfBodiesThatAreOpticallyThin) {
   }
 }
 
+TEST_F(InfoCommand, WarnsOfMapsThatContradictTheSurfaces) {
+  const Capture right = makeScene({.name = "head", .width = 96, .height = 96, .shadowSize = 256});
+  const auto warns = [&](const char* words, const std::function<void(Capture&)>& change) {
+    Capture c = right;
+    change(c);
+    writeCapture(c, directory / "map.exr");
+    return has(warningsOf(directory / "map.exr"), words);
+  };
+  const auto map = [](Capture& c) -> ShadowMap& { return c.lights.at(0).shadowMaps.at(0); };
+  const char *front = "of the surfaces in it lie in front of what it shows", *none = "no surface with a material lies in it";
+  EXPECT_FALSE(warns("lights[0].shadowMap: ", [](Capture&) {}));
+  EXPECT_TRUE(warns(front, [&](Capture& c) { map(c).depth.encoding = PELLUCID_DEPTH_DEVICE; }));
+  EXPECT_TRUE(warns(front, [&](Capture& c) { std::fill(map(c).depth.image.data.begin(), map(c).depth.image.data.end(), 0.0f); }));
+  EXPECT_TRUE(warns(front, [&](Capture& c) {
+    for (float& depth : map(c).depth.image.data) depth *= 100;
+  }));
+  EXPECT_FALSE(warns(front, [&](Capture& c) {
+    map(c).backFaces = true;
+    for (float& depth : map(c).depth.image.data) depth *= 100;
+  }));
+  EXPECT_TRUE(warns(none, [&](Capture& c) { map(c).clipFromWorld[12] += 5; }));
+}
+
 TEST_F(InfoCommand, SaysWhatIsMissing) {
   for (const char* buffer : {"backDepth", "albedo"}) manifest["buffers"].erase(buffer);
   manifest.erase("truth");

@@ -15,7 +15,7 @@ struct Sequence : Frame {
   PellucidPlan last{};
   bool first = true;
 
-  explicit Sequence(PellucidReuse reuse) { frame.options.reuse = reuse; }
+  explicit Sequence(PellucidReuse reuse) : Frame(0) { frame.options.reuse = reuse; }
 
   void turnLights(double degrees) {
     const double angle = degrees * std::numbers::pi / 180;

@@ -109,6 +109,31 @@ const Violation kViolations[] = {
      }},
     {"ShadowView", "shadowMaps[0].options.viewFromWorld", "encoding",
      [](Frame& f) { f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z; }},
+    {"ViewOffItsMap", "shadowMaps[0].options.viewFromWorld", "looks 90 degrees off clipFromWorld",
+     [](Frame& f) {
+       f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
+       const float view[16] = {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
+       std::copy(view, view + 16, f.maps[0].options.viewFromWorld);
+     }},
+    {"BiasThatIsAFactor", "shadowMaps[0].options.depthBiasConstant", "is 1.25, over half of the range",
+     [](Frame& f) { f.maps[0].options.depthBiasConstant = 1.25f; }},
+    {"StepThatIsACount", "shadowMaps[0].options.depthStep", "is 65535; needs the smallest difference",
+     [](Frame& f) { f.maps[0].options.depthStep = 65535; }},
+    {"DirectionOffItsMap", "lights[0].direction", "is 45 degrees off the rays of shadowMaps[0]",
+     [](Frame& f) { f.lights[0].direction[0] = f.lights[0].direction[2] = 1; }},
+    {"DirectionAgainstItsMap", "lights[0].direction", "is 180 degrees off the rays of shadowMaps[0]",
+     [](Frame& f) {
+       f.maps[0].encoding = PELLUCID_DEPTH_VIEW_Z;
+       for (int i = 0; i < 4; ++i) f.maps[0].options.viewFromWorld[5 * i] = 1;  // along -z
+     }},
+    {"SpotAwayFromItsMap", "lights[0].direction", "points away from what the light's shadow maps show",
+     [](Frame& f) {
+       const float clip[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0.1f, 0};  // w grows along z
+       std::copy(clip, clip + 16, f.maps[0].clipFromWorld);
+       f.lights[0].type = PELLUCID_LIGHT_SPOT;
+       f.lights[0].outerConeAngle = 0.5f;
+       f.lights[0].direction[2] = -1;
+     }},
     {"CasterIsTheExit", "shadowMaps[0].options.casterMaterialImage", "the exitImage",
      [](Frame& f) {
        f.images.push_back(Frame::view());
@@ -271,6 +296,14 @@ TEST(Validate, TilesMayMeet) {
     f.use();
     EXPECT_EQ(f.problems(PELLUCID_SEVERITY_WARNING), "");
   }
+}
+
+TEST(Validate, OneTileIsNotDrawnByTwoMatrices) {
+  CompleteFrame f;
+  f.maps.push_back(f.maps[0]);
+  f.maps[1].clipFromWorld[12] = 0.5f;
+  f.use();
+  EXPECT_NE(f.problems(PELLUCID_SEVERITY_WARNING).find("in the same image and layer"), std::string::npos);
 }
 
 TEST(Validate, LightIsNotAddedToTheIrradiance) {

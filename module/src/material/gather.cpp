@@ -200,6 +200,9 @@ double profileLength(const PellucidMaterial& m, int channel) {
 // Longest mean distance of samples, of diffusion lengths. Measured: procedural balls of skin, rings of
 // marble.
 constexpr double kLongest = 2.0 / 3;
+// Decay of the longest sample and of the entries' scale, of the fastest decay, at least: white media decay over kilometers, and
+// neither samples nor entries would be left for bodies.
+constexpr double kLeastDecay = 0.005;
 
 }  // namespace
 
@@ -213,9 +216,10 @@ shared::GatherConstants gatherConstants(const PellucidMaterial& m) {
     fastest = std::max(fastest, channels[c].decay(0));
   }
   // Samples spread between these lengths.
-  const double shortest = 1 / fastest, longest = std::max(kLongest / slowest, shortest);
+  const double slow = std::max(slowest, kLeastDecay * fastest);
+  const double shortest = 1 / fastest, longest = std::max(kLongest / slow, shortest);
   // Half of the entries are of the thicknesses up to this one, where T changes fastest.
-  const double depthScale = 0.5 / slowest;
+  const double depthScale = 0.5 / slow;
   g.lengths = {static_cast<float>(shortest), static_cast<float>(std::log2(longest / shortest)),
                static_cast<float>(2 / slowest), static_cast<float>(depthScale)};
   std::array<glm::vec4, kGatherEntries> slab{}, decay{};
