@@ -51,6 +51,16 @@ struct GltfBuilder {
     return bytes;
   }
 
+  // A triangle of one material.
+  static GltfBuilder triangle(const std::vector<float>& corners, const nlohmann::ordered_json& material) {
+    GltfBuilder b;
+    const int position = b.vectors(corners);
+    b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
+    b.json["materials"] = {material};
+    b.json["nodes"] = {{{"name", "body"}, {"mesh", 0}}};
+    return b;
+  }
+
 private:
   static void append(std::string& bytes, const void* data, std::size_t size) {
     bytes.append(static_cast<const char*>(data), size);

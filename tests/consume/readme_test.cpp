@@ -4,11 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <iterator>
-#include <map>
-#include <regex>
-#include <set>
 #include <string>
 
 #include <pellucid/pellucid.h>
@@ -144,35 +140,6 @@ TEST(Readme, OneSliceForTwoFramesShowsTheLaterLightTwice) {
   const auto [first, second] = exitances(1);
   expectLight(first, kIntensity[1]);
   expectLight(second, kIntensity[1]);
-}
-
-std::string textOf(const std::string& file) {
-  std::ifstream stream(std::string(PELLUCID_SOURCE_DIR) + "/" + file);
-  EXPECT_TRUE(stream) << file;
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-// Everything that the library's build looks for, in the words of the README.
-TEST(Readme, NamesWhatTheBuildNeeds) {
-  const std::map<std::string, std::string> words = {{"glm", "GLM"},
-                                                    {"Eigen3", "Eigen"},
-                                                    {"PELLUCID_VULKAN_INCLUDE", "the Vulkan headers"},
-                                                    {"PELLUCID_GLSLANG", "`glslangValidator`"}};
-  const std::string readme = textOf("README.md");
-  const std::regex search(R"(find_(?:package|path|program|library)\((\w+))");
-  std::set<std::string> found;
-  for (const char* file :
-       {"CMakeLists.txt", "cmake/shaders.cmake", "cmake/pellucid_target.cmake", "cmake/vulkan_headers.cmake",
-        "module/CMakeLists.txt", "module/material/CMakeLists.txt"}) {
-    const std::string text = textOf(file);
-    for (std::sregex_iterator match(text.begin(), text.end(), search), end; match != end; ++match) {
-      const std::string name = (*match)[1];
-      found.insert(name);
-      ASSERT_TRUE(words.count(name)) << file << " looks for " << name;
-      EXPECT_NE(readme.find(words.at(name)), std::string::npos) << "the README does not name " << name;
-    }
-  }
-  EXPECT_EQ(found.size(), words.size());
 }
 
 }  // namespace

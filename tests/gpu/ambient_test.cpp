@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "gpu_fixture.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/environment.h"
 #include "scene/scene.h"
 
@@ -162,11 +162,7 @@ TEST_F(AmbientLight, AgreesWithTheReference) {
     }
     const std::vector<PellucidMaterial> materials(c.materials.size(), skin());
     const ReplaySettings s = through();
-    pellucid::harness::reference::Settings r;
-    r.features = s.features;
-    r.translucency = s.translucency;
-    r.ambient = s.ambient.value_or(false);
-    const Image ref = pellucid::harness::reference::compute(c, materials, r).image;
+    const Image ref = referenceOf(c, materials, s);
     const Image gpu = replayer().run(c, materials, s).output;
     ReplaySettings off = s;
     off.ambient = false;

@@ -5,9 +5,9 @@
 #include <sys/wait.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "temporary_directory.h"
@@ -30,6 +30,12 @@ inline Outcome run(const std::string& arguments, const std::string& before = "")
   const int status = pclose(pipe);
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
+}
+
+// What `pellucid flicker --json` measured, among the other lines.
+inline nlohmann::json changesOf(const Outcome& outcome) {
+  const size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
+  return nlohmann::json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
 }
 
 class Cli : public testing::Test {

@@ -11,14 +11,13 @@
 #include "gpu_fixture.h"
 #include "model_builder.h"
 #include "raster/raster.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/vector.h"
 #include "temporary_directory.h"
 
 namespace {
 
 using namespace pellucid::test;
-namespace reference = pellucid::harness::reference;
 
 class EngineMaps : public GpuTest {
 protected:
@@ -226,9 +225,7 @@ protected:
     }
     ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     const Image image = replay(c, testMaterial(), s);
-    reference::Settings r;
-    r.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    const Image exact = reference::compute(c, {testMaterial()}, r).image;
+    const Image exact = referenceOf(c, {testMaterial()}, s);
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(image.at(x, y)[k], exact.at(x, y)[k], 2e-4) << x << ", " << y;
@@ -314,8 +311,7 @@ TEST_F(EngineMaps, DrawingsThatNoMapHasAreRefused) {
          o.shadowSize = 0;
        }}};
   for (const auto& [sentence, change] : kWrong) {
-    RasterOptions options;
-    options.width = options.height = 8;
+    RasterOptions options{.width = 8, .height = 8};
     change(options);
     const std::string said = refusalOf([&] { rasterize(device(), model, frontCamera(false), options); });
     EXPECT_NE(said.find(sentence), std::string::npos) << said;
@@ -338,8 +334,7 @@ Model squareAndShadow() {
 // N taps across make a ramp of N texels: a bilinear one of one texel, and N - 1 that further taps add.
 TEST_F(EngineMaps, FilteredShadowsAreRamps) {
   const Model model = squareAndShadow();
-  RasterOptions options;
-  options.width = options.height = 200;  // .1 mm a pixel
+  RasterOptions options{.width = 200, .height = 200};  // .1 mm a pixel
   options.shadowSize = 128;
   options.shadow.bits = 24;
   options.shadow.depthBiasConstant = 10;

@@ -5,19 +5,10 @@
 namespace {
 
 using namespace pellucid::test;
-using Json = nlohmann::ordered_json;
 
 class GltfCommand : public Cli {
 protected:
-  // A triangle of material "wax".
-  static GltfBuilder triangle() {
-    GltfBuilder b;
-    const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
-    b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
-    b.json["materials"] = {{{"name", "wax"}}};
-    b.json["nodes"] = {{{"name", "body"}, {"mesh", 0}}};
-    return b;
-  }
+  static GltfBuilder triangle() { return GltfBuilder::triangle({0, 0, 0, 2, 0, 0, 0, 2, 0}, {{"name", "wax"}}); }
   std::string write(const std::string& name, GltfBuilder b) const {
     std::ofstream(path(name), std::ios::binary) << b.glb();
     return path(name);
@@ -55,8 +46,7 @@ TEST_F(GltfCommand, FlickerFollowsPaths) {
                               " --size 96x96 --shadow-size 64 --unit cm --material wax=skin1 --light back --pixels 1 ";
   const Outcome outcome = run(flicker + "--path orbit --frames 3 --json --picture " + path("f.png"));
   EXPECT_EQ(outcome.code, 0) << outcome.text;
-  const std::size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
-  const auto changes = nlohmann::json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
+  const auto changes = changesOf(outcome);
   int paths = 0;
   for (const auto& change : changes) {
     if (!change.contains("steps")) continue;

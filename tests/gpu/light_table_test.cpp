@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <numbers>
 
-#include "all_texels.h"
 #include "common/compare.h"
 #include "gpu_fixture.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/scene.h"
+#include "scene/vector.h"
 
 namespace engine {
 #include "falloff_snippet.inc"  // of docs/integration.md
@@ -15,7 +15,6 @@ namespace engine {
 namespace {
 
 using namespace pellucid::test;
-namespace reference = pellucid::harness::reference;
 
 constexpr int kEntries = PELLUCID_LIGHT_TABLE_ENTRIES;
 
@@ -35,8 +34,8 @@ ReplaySettings translucency() { return inFloats(PELLUCID_FEATURE_TRANSLUCENCY); 
 
 class LightTables : public GpuTest {};
 
-// Light comes through a slab of 1 mm; what arrives behind it is known in closed form.
-TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
+// Dark in front, with a lamp 5 mm behind its hidden face.
+Capture slabBeforeALamp() {
   Capture c = flatCapture(48, 40);
   std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
   Light lamp;
@@ -45,6 +44,17 @@ TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
   lamp.direction = {0.6, 0, 0.8};
   lamp.intensity = 100;
   c.lights = {lamp};
+  return c;
+}
+glm::dvec3 fromLamp(const Capture& c, int x, int y) {
+  const glm::dvec3 hidden(((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0],
+                          ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5], -11);
+  return hidden - toGlm(c.lights[0].position);
+}
+
+// Light comes through a slab of 1 mm; what arrives behind it is known in closed form.
+TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
+  Capture c = slabBeforeALamp();
   const Image plain = replay(c, testMaterial(), translucency());
   c.lights[0].angleTable = table(line);
   const Image byAngle = replay(c, testMaterial(), translucency());
@@ -55,10 +65,8 @@ TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
   int beyond = 0;
   for (int y = 0; y < c.height; ++y)
     for (int x = 0; x < c.width; ++x) {
-      const double px = ((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0] - lamp.position[0],
-                   py = ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5] - lamp.position[1], pz = 5,
-                   away = std::hypot(px, py, pz);
-      const double angle = std::acos((px * lamp.direction[0] + pz * lamp.direction[2]) / away);
+      const glm::dvec3 way = fromLamp(c, x, y);
+      const double away = glm::length(way), angle = std::acos(glm::dot(way, toGlm(c.lights[0].direction)) / away);
       ASSERT_GT(*plain.at(x, y), 0.01f);
       // Entries are halves.
       ASSERT_NEAR(double(*byAngle.at(x, y)) / double(*plain.at(x, y)), 1 - angle / std::numbers::pi, 5e-4);
@@ -75,13 +83,7 @@ TEST_F(LightTables, FactorsAreThoseOfAngleAndDistance) {
 // The code that docs/integration.md shows, on the device: the light is what the engine's function says.
 TEST_F(LightTables, FalloffsOfEnginesAreThoseOfTheirTables) {
   constexpr float kRange = 9;
-  Capture c = flatCapture(48, 40);
-  std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
-  Light lamp;
-  lamp.type = PELLUCID_LIGHT_POINT;
-  lamp.position = {1.5, -1, -16};
-  lamp.intensity = 100;
-  c.lights = {lamp};
+  Capture c = slabBeforeALamp();
   const Image plain = replay(c, testMaterial(), translucency());
   for (float (*const falloff)(float, float) : {engine::inverseSquare, engine::smoothWindow}) {
     float most = 0;
@@ -89,13 +91,11 @@ TEST_F(LightTables, FalloffsOfEnginesAreThoseOfTheirTables) {
     EXPECT_EQ(*std::max_element(std::begin(made.factor), std::end(made.factor)), 1);
     c.lights[0].range = static_cast<double>(kRange);
     c.lights[0].distanceTable.assign(std::begin(made.factor), std::end(made.factor));
-    c.lights[0].intensity = lamp.intensity * static_cast<double>(most);
+    c.lights[0].intensity = 100 * static_cast<double>(most);
     const Image output = replay(c, testMaterial(), translucency());
     for (int y = 0; y < c.height; ++y)
       for (int x = 0; x < c.width; ++x) {
-        const double px = ((x + 0.5) / c.width * 2 - 1) / c.clipFromView[0] - lamp.position[0],
-                     py = ((y + 0.5) / c.height * 2 - 1) / c.clipFromView[5] - lamp.position[1], pz = 5,
-                     away = std::hypot(px, py, pz);
+        const double away = glm::length(fromLamp(c, x, y));
         const double expected =
             away < static_cast<double>(kRange)
                 ? away * away * static_cast<double>(falloff(static_cast<float>(away), kRange))
@@ -124,11 +124,7 @@ TEST_F(LightTables, AgreeWithTheReference) {
     for (const auto source : {0, 1}) {
       ReplaySettings s = translucency();
       s.translucency.cameraThickness = source;
-      reference::Settings r;
-      r.features = PELLUCID_FEATURE_TRANSLUCENCY;
-      r.translucency.cameraThickness = source;
-      const Image gpu = rgb(replayer().run(c, materials, s).output),
-                  truth = reference::compute(c, materials, r).image;
+      const Image gpu = rgb(replayer().run(c, materials, s).output), truth = referenceOf(c, materials, s);
       const auto metrics =
           compareImages(gpu, truth, comparisonMask(c.material, c.irradiance, Subset::All), 1);
       for (const auto& channel : metrics.channels) EXPECT_LT(channel.relativeRmse, 5e-4) << type << source;

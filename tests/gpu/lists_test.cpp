@@ -95,6 +95,7 @@ TEST_F(Lists, GroupsFollowTheMaterial) {
     const FrameRun run(device(), replayer().contextFor(c), c, {testMaterial()}, s);
     record(run);
     const Statistics statistics = run.statistics();
+    EXPECT_EQ(statistics.lists, s.indirectDispatches);
     std::map<std::string, Groups> found;
     for (uint32_t i = run.plan().dispatchCount; i-- > 0;)
       found[run.plan().dispatches[i].name] = statistics.dispatches[i];

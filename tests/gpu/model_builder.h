@@ -79,6 +79,12 @@ inline void addCube(Model& model, double half) {
     }
 }
 
+// Turns the triangles to be seen from the other side.
+inline void turnOver(Model& model, std::size_t firstIndex) {
+  for (std::size_t i = firstIndex; i < model.indices.size(); i += 3)
+    std::swap(model.indices[i], model.indices[i + 1]);
+}
+
 inline void addSphere(Model& model, const Vector3& center, double radius, std::uint32_t rings) {
   const auto first = static_cast<std::uint32_t>(model.vertices.size());
   const std::uint32_t segments = 2 * rings;

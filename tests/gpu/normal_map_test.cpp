@@ -1,5 +1,4 @@
 // Normal maps of the rasterizer against the tilt that one vector of the map means.
-#include <cmath>
 #include <functional>
 #include <glm/glm.hpp>
 
@@ -14,8 +13,7 @@ using namespace pellucid::test;
 class NormalMap : public GpuTest {
 protected:
   static Capture capture(const Model& model) {
-    RasterOptions options;
-    options.width = options.height = 32;
+    RasterOptions options{.width = 32, .height = 32};
     return rasterize(device(), model, frontCamera(true), options).capture;
   }
 

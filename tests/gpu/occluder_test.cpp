@@ -3,13 +3,12 @@
 #include <limits>
 
 #include "gpu_fixture.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/scene.h"
 
 namespace {
 
 using namespace pellucid::test;
-namespace reference = pellucid::harness::reference;
 
 // flatCapture() lit from behind: the map's surface lies 2 mm behind the pixels' front, texels are .16 mm
 // wide.
@@ -111,9 +110,7 @@ protected:
   // Red in the middle of the shadow, over red beside the shadow, of the GPU; the reference agrees.
   static double shadowed(const Capture& c) {
     ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
-    reference::Settings r;
-    r.features = PELLUCID_FEATURE_TRANSLUCENCY;
-    const Image gpu = replay(c, s), expected = reference::compute(c, compileMaterials(c), r).image;
+    const Image gpu = replay(c, s), expected = referenceOf(c, compileMaterials(c), s);
     int differing = 0;
     for (int x = 0; x < c.width; ++x)
       for (int i = 0; i < 3; ++i)

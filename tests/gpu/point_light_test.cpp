@@ -8,13 +8,12 @@
 #include "gpu/model_builder.h"
 #include "raster/framing.h"
 #include "raster/raster.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/vector.h"
 
 namespace {
 
 using namespace pellucid::test;
-namespace reference = pellucid::harness::reference;
 
 constexpr double kInner = 6, kOuter = 8;  // mm
 // Off the center, so that no face of the cube is like another.
@@ -28,8 +27,7 @@ void addHollow(Model& model, double radius, std::uint32_t rings) {
   addSphere(model, {0, 0, 0}, radius, rings);
   for (std::size_t i = firstVertex; i < model.vertices.size(); ++i)
     for (float& n : model.vertices[i].normal) n = -n;
-  for (std::size_t i = firstIndex; i < model.indices.size(); i += 3)
-    std::swap(model.indices[i + 1], model.indices[i + 2]);
+  turnOver(model, firstIndex);
 }
 
 // A shell of 2 mm with a light in it.
@@ -235,10 +233,7 @@ TEST_F(PointLights, AgreeWithTheReference) {
     options.shadowEncoding = encoding;
     const Capture c = rasterize(model, cameraAt({60, 50, 40}, {0, 0, 0}, 0.2), options).capture;
     ReplaySettings settings = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
-    reference::Settings exact;
-    exact.features = settings.features;
-    const Image gpu = replay(c, testMaterial(), settings);
-    const Image ref = reference::compute(c, {testMaterial()}, exact).image;
+    const Image gpu = replay(c, testMaterial(), settings), ref = referenceOf(c, {testMaterial()}, settings);
     int differ = 0, lit = 0;
     for (std::size_t i = 0; i < gpu.pixels(); ++i) {
       if (c.material[i] == 0) continue;
@@ -320,11 +315,7 @@ TEST_F(PointLights, FacesThatDoNotOverlapHaveNoSeam) {
     settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
     const auto light = [&](double widening, bool byReference) {
       c.lights[0].shadowMaps = mapsBehindASlab({0, 0, -16}, widening);
-      if (!byReference) return replay(c, skin(), settings);
-      reference::Settings exact;
-      exact.features = settings.features;
-      exact.translucency = settings.translucency;
-      return reference::compute(c, {skin()}, exact).image;
+      return byReference ? referenceOf(c, {skin()}, settings) : replay(c, skin(), settings);
     };
     for (const bool byReference : {false, true}) {
       if (byReference && samples > 0) continue;  // takes minutes

@@ -8,6 +8,7 @@
 #include "gpu/model_builder.h"
 #include "raster/bodies.h"
 #include "raster/framing.h"
+#include "raster/mesh.h"
 #include "raster/raster.h"
 #include "reference/light.h"
 #include "scene/vector.h"
@@ -98,9 +99,8 @@ TEST_F(Raster, EdgesOfClosedBodiesAreNotOpen) {
     }
   }
   // Inside out, the faces that are seen are those far away, and no body begins there.
-  for (std::size_t i = 0; i < model.indices.size(); i += 3) std::swap(model.indices[i], model.indices[i + 1]);
-  RasterOptions options;
-  options.width = options.height = 64;
+  turnOver(model, 0);
+  RasterOptions options{.width = 64, .height = 64};
   const RasterResult inverted = rasterize(model, frameModel(model, {0, 0, 1}, 0.5, 1, false), options);
   EXPECT_GT(inverted.openPixels, 500u);
 }
@@ -114,8 +114,7 @@ TEST_F(Raster, SphereHasExactThickness) {
   addSphere(model, {0, 0, 0}, kRadius, 256);
   endPart(model, 0);
   for (const bool orthographic : {false, true}) {
-    RasterOptions options;
-    options.width = options.height = 100;
+    RasterOptions options{.width = 100, .height = 100};
     const RasterResult result = rasterize(model, frontCamera(orthographic), options);
     const Capture& c = result.capture;
     EXPECT_EQ(result.openPixels, 0u);
@@ -143,16 +142,12 @@ TEST_F(Raster, SphereHasExactThickness) {
 TEST_F(Raster, FarthestBackFaceSpansHollows) {
   Model model = emptyModel();
   addCube(model, 5);
-  Model inner = emptyModel();
-  addCube(inner, 4);
   // A hollow: the inner cube turned inside out, in the same object.
-  const auto first = static_cast<std::uint32_t>(model.vertices.size());
-  model.vertices.insert(model.vertices.end(), inner.vertices.begin(), inner.vertices.end());
-  for (std::size_t i = 0; i < inner.indices.size(); i += 3)
-    for (const std::size_t k : {i, i + 2, i + 1}) model.indices.push_back(first + inner.indices[k]);
+  const std::size_t first = model.indices.size();
+  addCube(model, 4);
+  turnOver(model, first);
   endPart(model, 0);
-  RasterOptions options;
-  options.width = options.height = 32;
+  RasterOptions options{.width = 32, .height = 32};
   const Capture nearest = rasterize(model, frontCamera(false), options).capture;
   EXPECT_NEAR(planar(nearest, nearest.backDepth, 16, 16), 96, 2e-4);
   options.backFace = BackFace::Farthest;
@@ -167,8 +162,7 @@ TEST_F(Raster, OpenMeshHasNoThickness) {
   endPart(model, 0);
   addSphere(model, {0, 0, -20}, 9, 32);
   endPart(model, 1);
-  RasterOptions options;
-  options.width = options.height = 64;
+  RasterOptions options{.width = 64, .height = 64};
   for (const BackFace back : {BackFace::Nearest, BackFace::Farthest}) {
     options.backFace = back;
     const RasterResult result = rasterize(model, frontCamera(true), options);
@@ -189,17 +183,11 @@ TEST_F(Raster, HoleIsNotThickness) {
   Model model = emptyModel();
   addCube(model, 5);
   model.indices.erase(model.indices.begin() + 4 * 6, model.indices.begin() + 5 * 6);  // z = -5
-  Model behind = emptyModel();
-  addCube(behind, 3);
-  for (const std::uint32_t i : behind.indices)
-    model.indices.push_back(static_cast<std::uint32_t>(model.vertices.size()) + i);
-  for (Vertex& v : behind.vertices) {
-    v.position[2] -= 20;
-    model.vertices.push_back(v);
-  }
+  const std::size_t first = model.vertices.size();
+  addCube(model, 3);
+  for (std::size_t i = first; i < model.vertices.size(); ++i) model.vertices[i].position[2] -= 20;
   endPart(model, 0);
-  RasterOptions options;
-  options.width = options.height = 40;  // 0.5 mm
+  RasterOptions options{.width = 40, .height = 40};  // 0.5 mm
   const RasterResult result = rasterize(model, frontCamera(true), options);
   EXPECT_EQ(planar(result.capture, result.capture.backDepth, 20, 20), -1);
   EXPECT_EQ(result.openPixels, 20u * 20u);
@@ -209,8 +197,7 @@ TEST_F(Raster, SingleSidedFacesAreInvisibleFromBehindUnlessDoubleSided) {
   Model model = emptyModel();
   addQuad(model, {{-5, -5, 0}, {-5, 5, 0}, {5, 5, 0}, {5, -5, 0}}, {0, 0, -1});
   endPart(model, 0);
-  RasterOptions options;
-  options.width = options.height = 16;
+  RasterOptions options{.width = 16, .height = 16};
   const Capture culled = rasterize(model, frontCamera(true), options).capture;
   EXPECT_EQ(culled.material[16 * 8 + 8], 0);
   model.surfaces[0].doubleSided = true;
@@ -282,8 +269,7 @@ TEST_F(Raster, ShadowsFallWhereTheyShould) {
     double half;
   };
   const Case cases[] = {{directional({6, 0, -20}), 2}, {point, 3}, {spot, 3}};
-  RasterOptions options;
-  options.width = options.height = 200;  // 0.1 mm a pixel
+  RasterOptions options{.width = 200, .height = 200};  // 0.1 mm a pixel
   for (const Case& k : cases) {
     model.lights = {k.light};
     const Capture c = rasterize(model, frontCamera(true), options).capture;
@@ -399,8 +385,7 @@ TEST_F(Raster, TexturesMarksAndHoles) {
   model.surfaces[0].baseColor = {1, 1, 1};
   model.surfaces[0].addedColor = {0, 0, 0.25};
   model.surfaces[0].alphaCutoff = 0.5;
-  RasterOptions options;
-  options.width = options.height = 40;  // 0.5 mm
+  RasterOptions options{.width = 40, .height = 40};  // 0.5 mm
   const Capture c = rasterize(model, frontCamera(true), options).capture;
   const auto expectColor = [&](int x, int y, double r, double g, double b) {
     EXPECT_NEAR(c.albedo.at(x, y)[0], r, 1e-3) << x << ", " << y;  // half-float texels
@@ -530,6 +515,140 @@ TEST_F(Raster, PlatesInABodyBlockLightFromAside) {
         allTexels(c, materials, Image(48, 48, 3), [](int x, int y) { return x == 24 && y == 24; });
     EXPECT_LT(middle(expected) * materials[0].reflectance[0], 0.03f * open) << plate;
   }
+}
+
+// ---- Fewer triangles for back depth and shadow maps (Whelan 2009, 4.7.3)
+
+Model twoSpheres() {
+  Model model = emptyModel();
+  addSphere(model, {0, 0, 0}, 8, 48);
+  endPart(model, 1);
+  addSphere(model, {0, 0, -20}, 1, 24);
+  endPart(model, 2);
+  model.lights.resize(1);
+  model.lights[0].direction = {0.3, -0.2, 1};
+  return model;
+}
+
+class Simplify : public GpuTest {};
+
+TEST_F(Simplify, KeepsPartsAndTheirShareOfTriangles) {
+  const Model whole = twoSpheres(), simple = simplified(whole, 0.2);
+  ASSERT_EQ(simple.parts.size(), 2u);
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(simple.parts[i].firstIndex, next);
+    next += simple.parts[i].indexCount;
+    EXPECT_EQ(simple.parts[i].object, whole.parts[i].object);
+    EXPECT_EQ(simple.parts[i].indexCount % 3, 0u);
+    EXPECT_NEAR(simple.parts[i].indexCount / double(whole.parts[i].indexCount), 0.2, 0.02);
+  }
+  EXPECT_EQ(next, simple.indices.size());
+  EXPECT_EQ(simplified(whole, 1).indices, whole.indices);
+}
+
+// A fifth of the sphere's triangles: chords of about 0.5 mm in place of 8 mm of radius are off by a few
+// hundredths of a mm.
+TEST_F(Simplify, ChangesWhatLightComesThroughAlone) {
+  const Model model = twoSpheres();
+  RasterOptions options{.width = 96, .height = 96, .depthEncoding = PELLUCID_DEPTH_VIEW_Z, .shadowSize = 96};
+  const RasterResult whole = rasterize(device(), model, frontCamera(true), options);
+  options.simplify = 0.2;
+  const RasterResult simple = rasterize(device(), model, frontCamera(true), options);
+  const Capture &a = whole.capture, &b = simple.capture;
+  EXPECT_EQ(a.material, b.material);
+  EXPECT_TRUE(sameBits(a.frontDepth.image, b.frontDepth.image));
+  EXPECT_TRUE(sameBits(a.irradiance, b.irradiance));
+  EXPECT_FALSE(sameBits(a.backDepth.image, b.backDepth.image));
+  EXPECT_FALSE(sameBits(a.lights[0].shadowMaps[0].depth.image, b.lights[0].shadowMaps[0].depth.image));
+  double sum = 0;
+  int covered = 0;
+  for (std::size_t i = 0; i < a.material.size(); ++i) {
+    const float from = a.backDepth.image.data[i], to = b.backDepth.image.data[i];
+    if (a.material[i] == 0 || from >= kNoDepth || to >= kNoDepth) continue;
+    ++covered;
+    sum += std::abs(static_cast<double>(from - to));
+  }
+  EXPECT_GT(covered, 3000);
+  EXPECT_LT(sum / covered, 0.1) << "mm";
+}
+
+// ---- Surfaces whose reflected and transmitted light have colors of their own, through the replay
+
+constexpr double kE = 2;
+
+// A leaf, as KHR_materials_diffuse_transmission has it: half of the light comes through, in (.8, .1, .1).
+Model leaf() {
+  Model model = emptyModel();
+  addSquare(model, 0, 0, 0, 5);
+  endPart(model, 0);
+  Surface& surface = model.surfaces[0];
+  surface.doubleSided = true;
+  surface.baseColor = {0.1, 0.6, 0.1};
+  surface.addedColor = {0.4, 0.05, 0.05};
+  surface.displaced = 0.5;
+  surface.lobes = SurfaceLobes::Apart;
+  BurleyMaterial medium{{1e-3, 1e-3, 1e-3}, {{}}};
+  for (auto& channel : *medium.transmittance) channel = {1, 1e-6, 0, 1e-6};
+  model.materials = {medium};
+  return model;
+}
+
+class Lobes : public GpuTest {
+protected:
+  // The replayed light in the middle, with the sun travelling along z.
+  static std::array<double, 3> middle(Model model, double direction) {
+    model.lights = {directional({0, 0, direction}, kE)};
+    const RasterOptions options{.width = 33, .height = 33, .shadowSize = 256};
+    const Capture capture = rasterize(device(), model, frontCamera(true), options).capture;
+    const Image output = replay(capture, inFloats());
+    const float* rgb = output.at(16, 16);
+    return {rgb[0], rgb[1], rgb[2]};
+  }
+};
+
+// Half floats of images and shadow texels that straddle the sheet leave a percent.
+constexpr double kTolerance = 0.01;
+
+void expectRgb(const std::array<double, 3>& rgb, const std::array<double, 3>& expected) {
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(rgb[c], expected[c], kTolerance * std::max(expected[c], 0.1)) << c;
+}
+
+TEST_F(Lobes, ReflectedAndTransmittedLightHaveTheirOwnColors) {
+  expectRgb(middle(leaf(), -1), {0.1, 0.6, 0.1});
+  expectRgb(middle(leaf(), 1), {0.8, 0.1, 0.1});
+}
+
+// No blue light comes through, but blue reflects in spite of an albedo of 0.
+TEST_F(Lobes, ChannelsWithoutTransmittedLightReflect) {
+  Model model = leaf();
+  model.surfaces[0].addedColor = {0.4, 0.05, 0};
+  expectRgb(middle(model, -1), {0.1, 0.6, 0.1});
+  EXPECT_LT(middle(model, 1)[2], 0.005);
+}
+
+// The lobe map's alpha says how much comes through, its color in which color.
+TEST_F(Lobes, TheMapMultipliesWhatComesThrough) {
+  Model model = leaf();
+  model.textures = {Texture{1, 1, {255, 0, 255, 128}}};  // sRGB 1, 0, 1; half
+  model.surfaces[0].lobeMap = 0;
+  const double alpha = 128 / 255.0;
+  expectRgb(middle(model, -1),
+            {kE * 0.1 * (1 - 0.5 * alpha), kE * 0.6 * (1 - 0.5 * alpha), kE * 0.1 * (1 - 0.5 * alpha)});
+  // An albedo is at least 1 / 1024, because it carries the reflected light, too.
+  expectRgb(middle(model, 1), {0.8 * alpha, kE / 1024, 0.1 * alpha});
+}
+
+// A thin wall: a third of what scatters comes back.
+TEST_F(Lobes, ScatteredLightComesBackToo) {
+  Model model = leaf();
+  Surface& surface = model.surfaces[0];
+  surface.baseColor = {0, 0, 0};
+  surface.displaced = 0;
+  surface.backscatter = 0.5;
+  expectRgb(middle(model, -1), {0.4, 0.05, 0.05});
+  expectRgb(middle(model, 1), {0.8, 0.1, 0.1});
 }
 
 }  // namespace

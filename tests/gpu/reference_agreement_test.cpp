@@ -2,16 +2,17 @@
 // No other test finds an option of the thesis, or a kind of light, whose formula errs in the shaders alone.
 #include "gpu_fixture.h"
 
-#include <functional>
-#include <limits>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <ostream>
 #include <random>
+#include <sstream>
 
 #include "common/compare.h"
-#include "pellucid/pellucid_material.h"
 #include "reference/reference.h"
+#include "cli/settings.h"
+#include "reference_frame.h"
 #include "scene/scene.h"
 #include "unit/reference_captures.h"
 
@@ -112,12 +113,7 @@ protected:
     s.debugView = view;
     s.translucency.cameraThickness = source;
     s.features = features;
-    reference::Settings r;
-    r.debugView = view;
-    r.translucency.cameraThickness = source;
-    r.features = features;
-    const Image gpu = replayer().run(c, materials, s).output;
-    const Image ref = reference::compute(c, materials, r).image;
+    const Image gpu = replayer().run(c, materials, s).output, ref = referenceOf(c, materials, s);
     EXPECT_LT(worst(c, gpu, ref, channels, scale, outliers), tolerance);
   }
 };
@@ -152,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Agreement,
 // Every option of the thesis, on the scene where all of it shows.
 struct Option {
   const char* name;
-  std::function<void(TranslucencySettings&)> set;
+  const char* settings;  // of --set, with spaces between
   PellucidTransmittanceModel model = PELLUCID_TRANSMITTANCE_EXP2;
 };
 
@@ -160,76 +156,26 @@ struct Option {
 void PrintTo(const Option& value, std::ostream* out) { *out << value.name; }
 
 const Option kOptions[] = {
-    {"Cosine", [](TranslucencySettings& t) { t.angleModel = PELLUCID_ANGLE_COSINE; }},
-    {"InverseCosine", [](TranslucencySettings& t) { t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE; }},
-    {"Polynomial",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
-       t.anglePolynomial = {2.14506f, -2.27844f, 0.595752f, 0};  // negative in between
-     }},
-    {"MinimumDot",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
-       t.minimumDot = -0.4f;
-     }},
-    {"MinimumDotOfMinusOne",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_MINIMUM_DOT;
-       t.minimumDot = -1;
-     }},
-    {"PrescaledCosine",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_COSINE;
-       t.minimumDot = -0.4f;
-       t.prescaleAngle = true;
-     }},
-    {"PrescaledInverseCosine",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
-       t.minimumDot = -0.7f;
-       t.prescaleAngle = true;
-     }},
+    {"Cosine", "angle=cosine"},
+    {"InverseCosine", "angle=inverse-cosine"},
+    {"Polynomial", "angle=polynomial polynomial=2.14506,-2.27844,.595752,0"},  // negative in between
+    {"MinimumDot", "angle=minimum-dot minimum-dot=-.4"},
+    {"MinimumDotOfMinusOne", "angle=minimum-dot minimum-dot=-1"},
+    {"PrescaledCosine", "angle=cosine minimum-dot=-.4 prescale=1"},
+    {"PrescaledInverseCosine", "angle=inverse-cosine minimum-dot=-.7 prescale=1"},
     {"PrescaledPolynomial",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_POLYNOMIAL;
-       t.anglePolynomial = {-5.07621f, 7.75534f, -3.9017f, 0.650897f};
-       t.minimumDot = -0.5f;
-       t.prescaleAngle = true;
-     }},
-    {"PrescaledByMinusOne",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_INVERSE_COSINE;
-       t.minimumDot = -1;
-       t.prescaleAngle = true;
-     }},
-    {"MinimumDotAzimuth",
-     [](TranslucencySettings& t) {
-       t.angleModel = kMinimumDotAzimuth;
-       for (int i = 0; i < 36; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 7 % 36) / 40);
-       t.faceVector = {0.3f, 0.1f, 1};
-       t.upAxis = {0.1f, 2, 0};
-     }},
-    {"MinimumDotSphere",
-     [](TranslucencySettings& t) {
-       t.angleModel = kMinimumDotSphere;
-       for (int i = 0; i < 49; ++i) t.minimumDotTable.push_back(-static_cast<float>(i * 11 % 49) / 60);
-       t.faceVector = {0.3f, 0.1f, 1};
-     }},
-    {"ConstantView",
-     [](TranslucencySettings& t) {
-       t.angleModel = PELLUCID_ANGLE_COSINE;
-       t.constantViewDirection = true;
-     }},
-    {"Chord", [](TranslucencySettings& t) { t.chordThickness = true; }},
-    {"MaximumThickness", [](TranslucencySettings& t) { t.maximumThickness = 2.5f; }},
-    {"Filter",
-     [](TranslucencySettings& t) {
-       t.transmittanceFilter = {0.55f, 0.29f, 0.28f};
-     }},
-    {"Linear", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_LINEAR},
-    {"SinhExp", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_SINH_EXP},
-    {"Gaussians", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS},
-    {"GaussiansAsPrinted", [](TranslucencySettings&) {}, PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
+     "angle=polynomial polynomial=-5.07621,7.75534,-3.9017,.650897 minimum-dot=-.5 prescale=1"},
+    {"PrescaledByMinusOne", "angle=inverse-cosine minimum-dot=-1 prescale=1"},
+    {"MinimumDotAzimuth", "angle=minimum-dot-azimuth face=.3,.1,1 up=.1,2,0"},
+    {"MinimumDotSphere", "angle=minimum-dot-sphere face=.3,.1,1"},
+    {"ConstantView", "angle=cosine view=constant"},
+    {"Chord", "chord=1"},
+    {"MaximumThickness", "max-thickness=2.5"},
+    {"Filter", "filter=.55,.29,.28"},
+    {"Linear", "", PELLUCID_TRANSMITTANCE_LINEAR},
+    {"SinhExp", "", PELLUCID_TRANSMITTANCE_SINH_EXP},
+    {"Gaussians", "", PELLUCID_TRANSMITTANCE_GAUSSIANS},
+    {"GaussiansAsPrinted", "", PELLUCID_TRANSMITTANCE_GAUSSIANS_AS_PRINTED},
 };
 
 // The eye of an orthographic camera may stand anywhere along its rays, also behind what it shows.
@@ -307,10 +253,7 @@ TEST_F(GpuTest, MinimumDotTablesAgreeForLightsAllAround) {
       light.intensity = 4e4;
       c.lights.push_back(light);
     }
-    reference::Settings r;
-    r.features = s.features;
-    r.translucency = s.translucency;
-    const Image gpu = replay(c, testMaterial(), s), ref = reference::compute(c, {testMaterial()}, r).image;
+    const Image gpu = replay(c, testMaterial(), s), ref = referenceOf(c, {testMaterial()}, s);
     EXPECT_LT(worst(c, gpu, ref, 3, 1, 0), 1e-3);
   }
 }
@@ -329,12 +272,9 @@ TEST_F(GpuTest, MarkedPixelsAgreeWithTheReference) {
   s.translucency.materialMarkBit = 128;
   for (const uint32_t features : {1u, 3u}) {
     s.features = features;
-    reference::Settings r;
-    r.features = features;
-    r.translucency = s.translucency;
     const Image gpu = replay(c, testMaterial(), s);
     if (features == 1) {
-      EXPECT_LT(worst(c, gpu, reference::compute(c, {testMaterial()}, r).image, 3, 1, 2e-3), 1e-3);
+      EXPECT_LT(worst(c, gpu, referenceOf(c, {testMaterial()}, s), 3, 1, 2e-3), 1e-3);
       for (size_t i = 0; i < 3 * c.material.size(); ++i)
         if (c.material[i / 3] & 128) {
           ASSERT_EQ(gpu.data[i / 3 * 4 + i % 3], c.irradiance.data[i]);
@@ -361,14 +301,18 @@ TEST_P(ThesisOptions, AgreeWithTheReference) {
         {0.5f, 0.3f, 0.8f, 0.1f, 2}, {1e-4f, 1e-4f, 2e-4f, 0.2f, 1}, {0.4f, 3, 1, 0.3f, 3.5f}};
     std::memcpy(material.transmittance, parameters, sizeof parameters);
   }
+  SettingsOptions options;
+  std::istringstream words(GetParam().settings);
+  options.set.assign(std::istream_iterator<std::string>(words), {});
+  ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
+  s.translucency = options.parse().translucency;
+  s.translucency.gatherSamples = 0;
+  const int entries = s.translucency.angleModel == kMinimumDotSphere ? 49 : 36;
+  for (int i = 0; s.translucency.hasMinimumDotTable() && i < entries; ++i)
+    s.translucency.minimumDotTable.push_back(-static_cast<float>(i * 11 % entries) / 60);
   for (const auto source : {0, 1}) {
-    ReplaySettings s = inFloats(PELLUCID_FEATURE_TRANSLUCENCY);
     s.translucency.cameraThickness = source;
-    GetParam().set(s.translucency);
-    reference::Settings r;
-    r.features = s.features;
-    r.translucency = s.translucency;
-    const Image gpu = replay(c, material, s), ref = reference::compute(c, {material}, r).image;
+    const Image gpu = replay(c, material, s), ref = referenceOf(c, {material}, s);
     EXPECT_LT(worst(c, gpu, ref, 3, 1, 4e-3), 1e-3);
   }
 }
@@ -446,14 +390,9 @@ TEST_F(GpuTest, DiffusionOnPlanesIsNearBruteForceInEveryDirection) {
 
 // Burley's profile, 99.9 % of whose energy lies within `radius` mm.
 PellucidMaterial burley(double radius) {
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_BURLEY;
   // 3/4 e^{-r / 3d} + 1/4 e^{-r / d} = .001 (Christensen & Burley 2015, the cdf).
-  for (double& d : desc.burleyDistance) d = radius / 19.86;
-  PellucidMaterial m;
-  EXPECT_EQ(pellucidCompileMaterial(&desc, &m, nullptr, nullptr, nullptr), PELLUCID_OK);
-  return m;
+  const double d = radius / 19.86;
+  return compileMaterial(BurleyMaterial{{d, d, d}, {}}, "test");
 }
 
 // Where the rect cuts most of a kernel off, all levels are renormalized by how much of them lies in it.

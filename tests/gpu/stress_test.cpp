@@ -93,6 +93,15 @@ TEST(StressFrames, BindNoViewThatValidationDoesNotAskFor) {
     PellucidImageNeed needs[kMaxImageNeeds];
     uint32_t count = kMaxImageNeeds;
     ASSERT_EQ(pellucidGetImageNeeds(&whole, &count, needs), PELLUCID_OK) << i;
+    PellucidImageNeed ofRect[kMaxImageNeeds];
+    uint32_t countOfRect = kMaxImageNeeds;
+    ASSERT_EQ(pellucidGetImageNeeds(&frame, &countOfRect, ofRect), PELLUCID_OK) << i;
+    EXPECT_TRUE(std::equal(needs, needs + count, ofRect, ofRect + countOfRect,
+                           [](const PellucidImageNeed& a, const PellucidImageNeed& b) {
+                             return a.format == b.format && std::equal(a.extent, a.extent + 2, b.extent) &&
+                                    a.persistent == b.persistent;
+                           }))
+        << i << ": images serve every rect";
     const PellucidImage given = frame.frontDepth;
     std::fill_n(frame.transients, PELLUCID_MAX_TRANSIENTS, PellucidImage{});
     frame.options.history = {};

@@ -6,7 +6,7 @@
 #include "raster/raster.h"
 #include "reference/path_tracer/trace_scene.h"
 #include "reference/path_tracer/truth.h"
-#include "reference/reference.h"
+#include "reference_frame.h"
 #include "scene/scene.h"
 
 namespace {
@@ -112,31 +112,6 @@ TEST_F(ThinWall, LightsDoNotReachBeyondTheirMaps) {
   Capture c = draw(model);
   c.lights[0].shadowMaps[0].clipFromWorld[12] += 3;  // the sheet lies beside the map
   expectPixels(c, replay(c, gathering(0)), 1, [](double, double, std::size_t) { return 0; });
-}
-
-TEST_F(ThinWall, LightFromTheFrontIsReflectedAlone) {
-  Model model = sheet();
-  addSkin(model, {0, 8, 0}, 1.5);
-  model.lights = {directional({0.5, 0, -1}, kE)};
-  const Capture c = draw(model);
-  for (const std::uint32_t samples : {0u, 8u})
-    expectPixels(c, replay(c, gathering(samples)), 1, [&](double, double y, std::size_t k) {
-      return y > 2 ? -1 : kReflectance[k] * kE / std::hypot(0.5, 1);
-    });
-}
-
-TEST_F(ThinWall, WhatStandsBetweenHoldsLightBack) {
-  Model model = sheet();
-  addOccluder(model, 2, -1);
-  addSkin(model, {0, 8, 0}, 1.5);
-  model.lights = {directional({0, 0, 1}, kE)};
-  const Capture c = draw(model, 512);
-  for (const std::uint32_t samples : {0u, 8u})
-    expectPixels(c, replay(c, gathering(samples)), 1, [&](double x, double y, std::size_t k) {
-      const double off = std::max(std::abs(x), std::abs(y)) - 2;
-      // A texel is some .04 mm.
-      return std::abs(off) < 0.2 || y > 4 ? -1 : off < 0 ? 0 : kTransmittance[k] * kE;
-    });
 }
 
 // The sheet shadows neither itself nor what lies behind it as seen from the light.
@@ -285,12 +260,7 @@ TEST_F(ThinWall, AgreesWithTheReference) {
       ReplaySettings s = gathering(0);
       s.features = PELLUCID_FEATURE_TRANSLUCENCY;
       s.translucency.cameraThickness = row.source;
-      reference::Settings r;
-      r.features = s.features;
-      r.translucency = s.translucency;
-      r.translucency.gatherSamples = 0;
-      const Image gpu = replayer().run(c, materials, s).output,
-                  ref = reference::compute(c, materials, r).image;
+      const Image gpu = replayer().run(c, materials, s).output, ref = referenceOf(c, materials, s);
       std::size_t pixels = 0, apart = 0;
       double most = 0;
       for (std::size_t i = 0; i < gpu.pixels(); ++i) {

@@ -38,13 +38,7 @@ TEST_F(Cli, TruthRefusesByName) {
 
 // A .glb of a triangle of the material "paper", which has two sides.
 std::string paperSheet() {
-  GltfBuilder b;
-  const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
-  b.json["meshes"] = {
-      {{"primitives", {{{"attributes", {{"POSITION", b.vectors(corners)}}}, {"material", 0}}}}}};
-  b.json["materials"] = {{{"name", "paper"}, {"doubleSided", true}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  return b.glb();
+  return GltfBuilder::triangle({-1, -1, 0, 1, -1, 0, 0, 1, 0}, {{"name", "paper"}, {"doubleSided", true}}).glb();
 }
 
 // An open sheet, lit from behind, through the whole chain; its light is exact.

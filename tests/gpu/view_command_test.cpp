@@ -39,18 +39,10 @@ TEST_F(View, SavesWhatReplaysToTheSameBits) {
   EXPECT_EQ(bytes("a.pellucid.exr"), bytes("c.pellucid.exr"));
 }
 
-// A triangle whose material has a name and no color.
-void writeTriangle(const std::string& file) {
-  GltfBuilder b;
-  const int position = b.vectors({0, 0, 0, 2, 0, 0, 0, 2, 0});
-  b.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", position}}}, {"material", 0}}}}}};
-  b.json["materials"] = {{{"name", "wax"}}};
-  b.json["nodes"] = {{{"mesh", 0}}};
-  std::ofstream(file, std::ios::binary) << b.glb();
-}
-
+// Its material has a name and no color.
 TEST_F(View, SavesAModel) {
-  writeTriangle(path("t.glb"));
+  std::ofstream(path("t.glb"), std::ios::binary)
+      << GltfBuilder::triangle({0, 0, 0, 2, 0, 0, 0, 2, 0}, {{"name", "wax"}}).glb();
   expect(
       0,
       "view " + path("t.glb") + " --material wax=skin1 --light point:0,0,10:100 directional:0,0,-1:2" +

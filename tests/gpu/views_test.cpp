@@ -71,15 +71,6 @@ protected:
   }
 };
 
-TEST_F(ViewsTest, EyesHaveTheSameBitsTogether) {
-  const auto left = make(eye(0), gathered()), right = make(eye(1), gathered());
-  recordTogether({left.get(), right.get()});
-  const Image images[] = {left->output(), right->output()};
-  EXPECT_FALSE(sameBits(images[0], images[1])) << "the eyes see the same";
-  for (size_t i = 0; i < 2; ++i)
-    EXPECT_TRUE(sameBits(images[i], record(*make(eye(i), gathered())))) << "eye " << i;
-}
-
 const Capture& left() { return eye(0); }
 const Capture& right() { return eye(1); }
 // A capture of another size, without albedo.

@@ -1,10 +1,12 @@
-// The camera read from the projection matrix alone, over every convention.
+// The camera read from the projection matrix alone, over every convention: the module's and the reference's.
 #include "camera.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+
+#include "reference/camera.h"
 
 namespace {
 
@@ -68,6 +70,10 @@ TEST(Camera, InvertsTheProjectionOfEveryConvention) {
     EXPECT_EQ(range.nothing, c.reversed ? 0 : 1);
     const glm::uvec2 extent(640, 360);
     const pellucid::shared::Camera camera = pellucid::makeCamera(clipFromView, range, extent, 0.01);
+    pellucid::harness::Matrix columns;
+    std::copy_n(&clipFromView[0][0], columns.size(), columns.begin());
+    const pellucid::harness::reference::Camera exact(columns, 640, 360);
+    const bool isOfReference = c.perspective || c.rightHanded;  // its orthographic cameras look along -z
     for (const double p : {0.75, 3.0, 40.0}) {
       const glm::dvec4 view(0.11 * p, -0.07 * p, c.forward() * p, 1);
       const glm::dvec4 clip = clipFromView * view;
@@ -81,7 +87,20 @@ TEST(Camera, InvertsTheProjectionOfEveryConvention) {
       const double tolerance = 3e-7 * (1 + p);
       EXPECT_NEAR(ray.z + ray.x * p, view.x, tolerance);
       EXPECT_NEAR(ray.w + ray.y * p, view.y, tolerance);
+      if (!isOfReference) continue;
+      EXPECT_NEAR(glm::distance(exact.position(pixel + 0.5, p), glm::dvec3(view)), 0, 1e-12 * (1 + p));
+      // A float holds 6e-8 of a device depth, and perspective ones lie close beside the far end.
+      EXPECT_NEAR(exact.planarDepth(static_cast<float>(depth), PELLUCID_DEPTH_DEVICE).value_or(0), p, 1e-3 * p);
     }
+    // The cleared value, what lies beyond 0..1 and what is not a number hold no surface; the near end does.
+    const float cleared = c.reversed ? 0.0f : 1.0f, nan = std::numeric_limits<float>::quiet_NaN();
+    for (const float nothing : {cleared, -0.5f, 1.5f, nan})
+      EXPECT_FALSE(isOfReference && exact.planarDepth(nothing, PELLUCID_DEPTH_DEVICE)) << nothing;
+    if (c.perspective) {
+      EXPECT_NEAR(exact.planarDepth(1 - cleared, PELLUCID_DEPTH_DEVICE).value_or(0), c.nearest, 1e-9);
+    }
+    for (const float nothing : {0.0f, -1.0f, 1e9f, std::numeric_limits<float>::infinity(), nan})
+      EXPECT_FALSE(exact.planarDepth(nothing, PELLUCID_DEPTH_VIEW_Z)) << nothing;
     EXPECT_FLOAT_EQ(camera.range.w, 10.0f) << "mm per unit";
   }
 }

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +11,7 @@
 #include "common/error.h"
 #include "common/png.h"
 #include "unit/capture_samples.h"
+#include "unit/run_command.h"
 
 namespace pellucid::harness {
 namespace {
@@ -116,21 +116,8 @@ TEST(CompareMask, SplitsByFrontIrradiance) {
 
 // Standard output of `pellucid compare ARGUMENTS`; also in `printed`, when it throws too.
 std::string runCompare(std::vector<std::string> arguments, std::string* printed = nullptr) {
-  CLI::App app;
-  addCompareCommand(app);
   arguments.insert(arguments.begin(), "compare");
-  std::reverse(arguments.begin(), arguments.end());
-  std::exception_ptr thrown;
-  testing::internal::CaptureStdout();
-  try {
-    app.parse(arguments);
-  } catch (...) {
-    thrown = std::current_exception();
-  }
-  const std::string text = testing::internal::GetCapturedStdout();
-  if (printed) *printed = text;
-  if (thrown) std::rethrow_exception(thrown);
-  return text;
+  return runCommand(addCompareCommand, arguments, printed);
 }
 
 class CompareCommand : public testing::Test {
@@ -210,8 +197,7 @@ TEST(CompareCommandOfImages, SaysWhatTheEyeSees) {
     for (int x = 0; x < 16; ++x) image.at(x, y)[0] = 1.1f;
   image.at(20, 9)[1] = 2;
   writeExr(a, image, {"R", "G", "B"});
-  const auto json = nlohmann::json::parse(
-runCompare({a, b, "--json", "--ratio", ratio}));
+  const auto json = nlohmann::json::parse(runCompare({a, b, "--json", "--ratio", ratio}));
   EXPECT_EQ(json["isolated"]["a"], 1);
   EXPECT_EQ(json["isolated"]["b"], 0);
   EXPECT_EQ(json["spots"], 1);

@@ -12,6 +12,7 @@
 
 #include "domains.h"
 #include "frame_fixture.h"
+#include "images.h"
 
 namespace {
 
@@ -63,26 +64,23 @@ const float kExtremes[] = {std::numeric_limits<float>::quiet_NaN(),
                            3e38f,
                            -3e38f};
 
-// The struct of a frame that the tables of `Struct` are about, and what its fields are called by.
+// The struct of a frame that the tables of `Struct` are about, the struct's name, and what its fields are called by.
 template <class Struct>
-Struct& objectOf(Frame& f) {
-  if constexpr (std::is_same_v<Struct, PellucidFrame>) return f.frame;
-  if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return f.thesis;
-  if constexpr (std::is_same_v<Struct, PellucidMaterial>) return f.material;
-  if constexpr (std::is_same_v<Struct, PellucidLight>) return f.lights[0];
-  if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return f.maps[0];
-  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return static_cast<Whole&>(f).table;
-}
-
-template <class Struct>
-const char* prefix() {
-  if constexpr (std::is_same_v<Struct, PellucidThesisOptions>) return "thesis.";
-  if constexpr (std::is_same_v<Struct, PellucidMaterial>) return "materials[0].";
-  if constexpr (std::is_same_v<Struct, PellucidLight>) return "lights[0].";
-  if constexpr (std::is_same_v<Struct, PellucidLightTable>) return "options.lightTables[0].";
-  if constexpr (std::is_same_v<Struct, PellucidShadowMap>) return "shadowMaps[0].";
-  return "";
-}
+struct Of;
+#define OF(Struct, object, prefix)                    \
+  template <>                                         \
+  struct Of<Struct> {                                 \
+    static Struct& of(Frame& f) { return object; }    \
+    static constexpr const char* kName = #Struct;     \
+    static constexpr const char* kPrefix = prefix;    \
+  };
+OF(PellucidFrame, f.frame, "")
+OF(PellucidThesisOptions, f.thesis, "thesis.")
+OF(PellucidMaterial, f.material, "materials[0].")
+OF(PellucidLight, f.lights[0], "lights[0].")
+OF(PellucidShadowMap, f.maps[0], "shadowMaps[0].")
+OF(PellucidLightTable, static_cast<Whole&>(f).table, "options.lightTables[0].")
+#undef OF
 
 template <class Value>
 void set(void* object, size_t offset, uint32_t index, Value value) {
@@ -105,7 +103,7 @@ TYPED_TEST(Domains, FloatsOutsideAreNamed) {
           Whole f;
           change(f);
           ASSERT_EQ(f.problems(), "");
-          auto& object = objectOf<TypeParam>(f);
+          auto& object = Of<TypeParam>::of(f);
           set(&object, d.offset, i, value);
           const std::string problems = f.problems();
           if (!isRead(d, &object, i)) {
@@ -114,7 +112,7 @@ TYPED_TEST(Domains, FloatsOutsideAreNamed) {
           }
           read.insert(d.field);
           if (contains(d, value)) continue;  // whether it fits the others is other tests' matter
-          EXPECT_NE(problems.find(std::string(prefix<TypeParam>()) + d.field), std::string::npos)
+          EXPECT_NE(problems.find(std::string(Of<TypeParam>::kPrefix) + d.field), std::string::npos)
               << d.field << "[" << i << "] = " << value << ": " << problems;
         }
   EXPECT_EQ(read.size(), domainsOf<TypeParam>().floats.size())
@@ -127,8 +125,8 @@ TYPED_TEST(Domains, IntegersOutsideAreNamed) {
       for (const uint32_t value : {d.least - 1, d.most + 1, 0x80000000u, 0xFFFFFFFFu}) {
         if (value >= d.least && value <= d.most) continue;
         Whole f;
-        set(&objectOf<TypeParam>(f), d.offset, i, value);
-        const std::string problems = f.problems(), field = std::string(prefix<TypeParam>()) + d.field;
+        set(&Of<TypeParam>::of(f), d.offset, i, value);
+        const std::string problems = f.problems(), field = std::string(Of<TypeParam>::kPrefix) + d.field;
         EXPECT_EQ(problems.find(field), 0u) << problems;
         EXPECT_NE(problems.find("is " + std::to_string(value)), std::string::npos) << problems;
       }
@@ -156,21 +154,10 @@ std::set<std::string> declared(const std::string& type, const std::string& name)
   return fields;
 }
 
-template <class Struct>
-const char* nameOf() {
-  return std::is_same_v<Struct, PellucidFrame>           ? "PellucidFrame"
-         : std::is_same_v<Struct, PellucidThesisOptions> ? "PellucidThesisOptions"
-         : std::is_same_v<Struct, PellucidMaterial>      ? "PellucidMaterial"
-         : std::is_same_v<Struct, PellucidLight>         ? "PellucidLight"
-         : std::is_same_v<Struct, PellucidLightTable>    ? "PellucidLightTable"
-                                                         : "PellucidShadowMap";
-}
-
 TYPED_TEST(Domains, TheTableHasEveryFloatOfTheHeader) {
-  const char* const name = nameOf<TypeParam>();
   std::set<std::string> table;
   for (const FloatDomain& d : domainsOf<TypeParam>().floats) table.insert(d.field);
-  EXPECT_EQ(table, declared("float", name));
+  EXPECT_EQ(table, declared("float", Of<TypeParam>::kName));
 }
 
 // Integers whose domain is no interval, or depends on other fields: values that each must refuse, and the
@@ -185,7 +172,7 @@ struct IntegerRule {
 
 #define RULE(Struct, integer, named, ...)                                                       \
   {                                                                                             \
-#Struct, #integer, named, [](Frame & f, uint32_t v) { objectOf<Struct>(f).integer = v; }, { \
+#Struct, #integer, named, [](Frame & f, uint32_t v) { Of<Struct>::of(f).integer = v; }, { \
       __VA_ARGS__                                                                               \
     }                                                                                           \
   }
@@ -260,26 +247,21 @@ TYPED_TEST(Domains, EveryIntegerOfTheHeaderHasADomainOrARule) {
   std::set<std::string> known;
   for (const IntegerDomain& d : domainsOf<TypeParam>().integers) known.insert(d.field);
   for (const IntegerRule& rule : kIntegerRules)
-    if (std::string(rule.structName) == nameOf<TypeParam>())
+    if (std::string(rule.structName) == Of<TypeParam>::kName)
       known.insert(std::string(rule.field).substr(0, std::string(rule.field).find('[')));
-  std::set<std::string> fields = declared("uint32_t", nameOf<TypeParam>());
+  std::set<std::string> fields = declared("uint32_t", Of<TypeParam>::kName);
   fields.erase("tables");  // no number, but all that shaders read
   EXPECT_EQ(known, fields);
 }
 
 // Each image in each layout that shaders cannot read, and the written ones in all but GENERAL.
 TEST(Domains, LayoutsThatDoNotFitAreNamed) {
-  const std::vector<std::pair<std::string, std::function<PellucidImage&(Frame&)>>> images = {
-      {"frontDepth", [](Frame& f) -> PellucidImage& { return f.frame.frontDepth; }},
-      {"backDepth", [](Frame& f) -> PellucidImage& { return f.frame.backDepth; }},
-      {"irradiance", [](Frame& f) -> PellucidImage& { return f.frame.irradiance; }},
-      {"hiddenIrradiance", [](Frame& f) -> PellucidImage& { return f.frame.hiddenIrradiance; }},
-      {"albedo", [](Frame& f) -> PellucidImage& { return f.frame.albedo; }},
-      {"material", [](Frame& f) -> PellucidImage& { return f.frame.material; }},
+  std::vector<std::pair<std::string, std::function<PellucidImage&(Frame&)>>> images = {
       {"shadowImages[0]", [](Frame& f) -> PellucidImage& { return f.images[0]; }},
-      {"output", [](Frame& f) -> PellucidImage& { return f.frame.output; }},
       {"transients[0]", [](Frame& f) -> PellucidImage& { return f.frame.transients[0]; }},
       {"options.history", [](Frame& f) -> PellucidImage& { return f.frame.options.history; }}};
+  for (const ImageField& i : kImageFields)
+    images.emplace_back(i.name, [&i](Frame& f) -> PellucidImage& { return f.frame.*i.field; });
   const VkImageLayout readable[] = {
       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
       VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
@@ -297,8 +279,9 @@ TEST(Domains, LayoutsThatDoNotFitAreNamed) {
                                   VK_IMAGE_LAYOUT_MAX_ENUM};
   const auto problemsWith = [](const auto& image, VkImageLayout layout) {
     Whole f;
-    f.frame.albedo = f.frame.hiddenIrradiance = f.frame.options.history = Frame::view();
-    f.frame.options.reuse = PELLUCID_REUSE_ALTERNATE;
+    f.frame.albedo = f.frame.hiddenIrradiance = f.frame.motion = f.frame.options.history = Frame::view();
+    f.frame.options.reuse = PELLUCID_REUSE_ACCUMULATE;
+    f.frame.options.gatherSamples = 8;
     image(f).layout = layout;
     return f.problems();
   };

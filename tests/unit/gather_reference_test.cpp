@@ -2,11 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "capture/material.h"
 #include "capture/capture.h"
-#include "pellucid/pellucid_material.h"
 #include "reference/gather.h"
 #include "reference/path_tracer/truth.h"
 #include "reference/path_tracer/walk.h"
@@ -17,7 +18,7 @@ namespace {
 using namespace pellucid::harness;
 namespace reference = pellucid::harness::reference;
 
-constexpr double kScattering[3] = {0.74, 0.88, 1.01}, kAbsorption[3] = {0.032, 0.17, 0.48};  // skin1
+constexpr std::array<double, 3> kScattering = {0.74, 0.88, 1.01}, kAbsorption = {0.032, 0.17, 0.48};  // skin1
 
 // A pixel; the truth's noise is 1 to 8 % where it is bright and is taken off below.
 constexpr std::uint64_t kWalks = 20000;
@@ -25,8 +26,8 @@ constexpr std::uint64_t kWalks = 20000;
 // What leaves a ball in light from all around, against walks.
 TEST(GatherBody, BallsReturnWhatWalksDo) {
   struct Case {
-    double scattering[3], absorption[3], ior;
-    double radius, limit[3];  // mm; relative, noise included
+    std::array<double, 3> scattering, absorption;
+    double ior, radius, limit[3];  // mm; relative, noise included
   };
   // With an index of refraction the fit of `excess` (module/src/material/gather.cpp) leaves 4 %.
   const Case cases[] = {{{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1, 4, {0.02, 0.03, 0.02}},
@@ -35,14 +36,8 @@ TEST(GatherBody, BallsReturnWhatWalksDo) {
                         {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 1.4, 24, {0.03, 0.03, 0.03}},
                         {{2.19, 2.62, 3.0}, {0.0021, 0.0041, 0.0071}, 1.5, 2, {0.02, 0.02, 0.02}}};
   for (const Case& k : cases) {
-    PellucidMaterialDesc desc;
-    pellucidInitMaterialDesc(&desc);
-    desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
-    std::copy_n(k.scattering, 3, desc.scattering);
-    std::copy_n(k.absorption, 3, desc.absorption);
-    desc.ior = k.ior;
-    PellucidMaterial material;
-    ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
+    const PellucidMaterial material =
+        compileMaterial(CoefficientMaterial{k.scattering, k.absorption, 0, k.ior}, "test");
     const glm::dvec3 leaves = reference::GatherKernel(material).leavesBall(k.radius);
     SceneModel ball;
     ball.radius = k.radius;
@@ -85,14 +80,7 @@ TEST_P(GatherModel, IsNearTheTruth) {
                                    .orthographic = true,
                                    .shadowSize = 384};
   const Capture c = makeScene(parameters);
-  PellucidMaterialDesc desc;
-  pellucidInitMaterialDesc(&desc);
-  desc.kind = PELLUCID_MATERIAL_COEFFICIENTS;
-  std::copy_n(kScattering, 3, desc.scattering);
-  std::copy_n(kAbsorption, 3, desc.absorption);
-  desc.ior = ior;
-  PellucidMaterial material;
-  ASSERT_EQ(pellucidCompileMaterial(&desc, &material, nullptr, nullptr, nullptr), PELLUCID_OK);
+  const PellucidMaterial material = compileMaterial(CoefficientMaterial{kScattering, kAbsorption, 0, ior}, "test");
   const reference::SurfaceReader surfaces(c);
   const reference::Gather gather(c, surfaces, {material});
   // Unlit pixels along the middle row, where no light from the front is near.

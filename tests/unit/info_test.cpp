@@ -1,15 +1,13 @@
 // `pellucid info` on a capture whose every number is known.
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 
 #include "capture/write.h"
 #include "cli/commands.h"
-#include "common/error.h"
 #include "scene/scene.h"
 #include "unit/capture_samples.h"
+#include "unit/run_command.h"
 
 namespace pellucid::harness {
 namespace {
@@ -18,28 +16,16 @@ using nlohmann::json;
 
 class InfoCommand : public testing::Test {
 protected:
-  std::string run(const std::vector<std::string>& flags = {}) {
+  std::string run(const std::string& flag = "") {
     writeText(directory / "m.json", manifest.dump());
-    return runOn(directory / "m.json", flags);
+    return runOn(directory / "m.json", flag);
   }
-  static std::string runOn(const std::filesystem::path& capture, const std::vector<std::string>& flags) {
-    CLI::App app;
-    addInfoCommand(app);
-    std::vector<std::string> arguments = flags;  // CLI11 takes them last first
-    arguments.push_back(capture.string());
-    arguments.push_back("info");
-    testing::internal::CaptureStdout();
-    try {
-      app.parse(arguments);
-    } catch (...) {
-      testing::internal::GetCapturedStdout();
-      throw;
-    }
-    return testing::internal::GetCapturedStdout();
+  static std::string runOn(const std::filesystem::path& capture, const std::string& flag) {
+    return runCommand(addInfoCommand, {"info", capture.string(), flag});
   }
-  json info() { return json::parse(run({"--json"})); }
+  json info() { return json::parse(run("--json")); }
   static json warningsOf(const std::filesystem::path& capture) {
-    return json::parse(runOn(capture, {"--json"}))["warnings"];
+    return json::parse(runOn(capture, "--json"))["warnings"];
   }
   static bool has(const json& sentences, const std::string& part) {
     return std::any_of(sentences.begin(), sentences.end(), [&](const json& sentence) {

@@ -1,18 +1,17 @@
 // `pellucid material`: what it prints and what it refuses.
 #include <gtest/gtest.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <sstream>
 #include <string>
 
 #include "cli/commands.h"
 #include "common/error.h"
 #include "refusal.h"
+#include "unit/run_command.h"
 
 namespace {
 
@@ -23,21 +22,7 @@ std::filesystem::path scratch(const std::string& name) {
   return std::filesystem::path(testing::TempDir()) / (std::string(test->name()) + "_" + name);
 }
 
-// Standard output of `pellucid material ARGUMENTS`.
-std::string run(const std::string& arguments) {
-  CLI::App app;
-  addMaterialCommand(app);
-  std::ostringstream out;
-  std::streambuf* const standard = std::cout.rdbuf(out.rdbuf());
-  try {
-    app.parse("material " + arguments);
-  } catch (...) {
-    std::cout.rdbuf(standard);
-    throw;
-  }
-  std::cout.rdbuf(standard);
-  return out.str();
-}
+std::string run(const std::string& arguments) { return runCommand(addMaterialCommand, {"material", arguments}); }
 
 std::string refusal(const std::string& arguments) {
   return pellucid::test::refusalOf([&] { run(arguments); });

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "material_monte_carlo.h"
 #include "quadrature.h"
@@ -97,30 +96,27 @@ TEST(OpenPbr, PhotonsSeeTheColor) {
   }
 }
 
-// The slab solver. Kulla and Conty's albedo is fitted to diffuse light without a boundary: under that light
-// it is good to .015. Along the normal it is darker, and behind a boundary darker still.
-TEST(OpenPbr, ColorsOfTheSolverAndOfKullaAndConty) {
-  struct Row {
-    double color, albedo[4];  // seen with Kulla & Conty's at index 1, 1.3, 1.4, 1.5
-  };
-  constexpr double kIor[] = {1, 1.3, 1.4, 1.5};
-  for (const Row& row : {Row{0.2, {0.162, 0.093, 0.079, 0.068}}, Row{0.5, {0.438, 0.312, 0.277, 0.247}},
-                         Row{0.8, {0.759, 0.665, 0.629, 0.594}}, Row{0.95, {0.938, 0.907, 0.894, 0.880}}})
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Angles angles = makeAngles(kIor[i]);
+// Kulla and Conty's albedo is fitted to diffuse light without a boundary: under that light it is good to .015.
+// Along the normal it is darker, and behind a boundary darker still.
+TEST(OpenPbr, TheSolverHasTheColorAndKullaAndContyAreDarker) {
+  for (const double color : {0.2, 0.5, 0.8, 0.95}) {
+    double brightest = color;
+    for (const double ior : {1.0, 1.3, 1.4, 1.5}) {
+      const Angles angles = makeAngles(ior);
       const auto halfSpace = [&](double scattering) {
         return Medium(angles, {scattering, 1 - scattering}).slab(kHalfSpace);
       };
-      const double entering = 1 - fresnelReflectance(1, kIor[i]);
-      const double solved = described(openPbr(row.color, 0, kIor[i])).scattering[0];
-      EXPECT_NEAR(halfSpace(solved).reflectanceNormal / entering, row.color, 1e-6);
-      const Slab approximate = halfSpace(kullaConty(row.color));
-      EXPECT_NEAR(approximate.reflectanceNormal / entering, row.albedo[i], 6e-4)
-          << row.color << ' ' << kIor[i];
-      if (i == 0) {
-        EXPECT_NEAR(approximate.reflectance, row.color, 0.015);
+      const double entering = 1 - fresnelReflectance(1, ior);
+      const double solved = described(openPbr(color, 0, ior)).scattering[0];
+      EXPECT_NEAR(halfSpace(solved).reflectanceNormal / entering, color, 1e-6);
+      const Slab approximate = halfSpace(kullaConty(color));
+      EXPECT_LT(approximate.reflectanceNormal / entering, brightest - 0.01) << color << ' ' << ior;
+      brightest = approximate.reflectanceNormal / entering;
+      if (ior == 1) {
+        EXPECT_NEAR(approximate.reflectance, color, 0.015);
       }
     }
+  }
 }
 
 TEST(OpenPbr, WrongValuesAreNamed) {

@@ -78,18 +78,6 @@ TEST(MaterialProfile, BurleyDistanceFitsTransport) {
   }
 }
 
-// Christensen & Burley 2015, diffuse transmission: l / d = 1.9 - A + 3.5 (A - 0.8)^2, for n = 1. Their fit
-// minimizes another distance; up to A = 0.8 the two agree to a tenth.
-TEST(MaterialProfile, WithoutBoundariesAgreesWithChristensenAndBurley) {
-  for (const double albedo : {0.5, 0.8, 0.95, 0.99}) {
-    const Coefficients c{albedo, 1 - albedo};
-    const Angles angles = makeAngles(1);
-    const double rho = Medium(angles, c).slab(kHalfSpace).reflectance;
-    const double published = 1 / (1.9 - rho + 3.5 * (rho - 0.8) * (rho - 0.8));
-    EXPECT_NEAR(burleyDistance(c, 1) / published, 1, 0.1) << albedo;
-  }
-}
-
 TEST(MaterialProfile, DistanceIsSmoothAndClamped) {
   double previous = 0;
   for (double albedo = 0; albedo <= 1; albedo += 0.005) {

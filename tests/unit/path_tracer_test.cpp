@@ -1,10 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "capture/capture.h"
-#include "common/error.h"
+#include "gpu/model_builder.h"
 #include "pellucid/pellucid_material.h"
 #include "raster/bodies.h"
 #include "reference/ambient.h"
@@ -13,12 +14,12 @@
 #include "reference/path_tracer/walk.h"
 #include "refusal.h"
 #include "scene/model.h"
-#include "scene/vector.h"
 
 namespace {
 
 using namespace pellucid::harness;
 using namespace pellucid::harness::reference;
+namespace test = pellucid::test;
 
 TraceMedium skin1(double ior) { return {{0.74, 0.88, 1.01}, {0.032, 0.17, 0.48}, 0, ior}; }
 
@@ -107,58 +108,13 @@ TEST(PathTracer, AnisotropicSlabIsVanDeHulsts) {
   expectNear(back, glm::dvec3(.09739), 3, "R");
 }
 
-// What enters a half-space under a light at normal incidence comes back as its diffuse reflectance, whatever
-// the shape.
-TEST(PathTracer, LargeShapesReflectLikeAHalfSpace) {
-  const TraceMedium medium = skin1(1);
-  Emitters emitters;
-  emitters.lights.resize(1);
-  const auto check = [&](std::unique_ptr<Solid> solid, const glm::dvec3& point, const char* name) {
-    SceneModel model = oneSolid(std::move(solid));
-    model.radius = 1400;
-    const auto scene = makeSolidScene(model);
-    const glm::dvec3 normal = model.objects[0].solid->normal(point);
-    emitters.lights[0].direction = fromGlm(-normal);
-    Mean mean;
-    for (std::uint64_t i = 0; i < 40000; ++i) {
-      PathRandom random(21, 0, i);
-      const auto exit = walk(*scene, medium, {point, normal, normal, 0, 1}, random);
-      mean.add(exit ? exit->weight * sampleIrradiance(*scene, emitters, exit->surface, random)
-                    : glm::dvec3(0));
-    }
-    expectNear(mean, halfSpaceReflectance(medium), 4, name);
-  };
-  check(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(400)), {0, 400, 0}, "sphere");
-  check(std::make_unique<Ellipsoid>(glm::dvec3(0), glm::dvec3(1400, 600, 400)), {0, 600, 0}, "ellipsoid");
-}
-
-// A cube of triangles around the origin, without its top where `open`.
+// A cube around the origin, without its top where `open`.
 Model cube(double half, bool open) {
-  Model model;
-  model.metersPerUnit = 0.001;
-  model.surfaces.resize(1);
+  Model model = test::emptyModel();
   model.surfaces[0].name = "skin";
-  model.surfaces[0].material = 1;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double sign : {-1.0, 1.0}) {
-      if (open && axis == 1 && sign > 0) continue;
-      glm::dvec3 n(0), u(0);
-      n[axis] = sign;
-      u[(axis + 1) % 3] = 1;
-      const glm::dvec3 v = glm::cross(n, u);
-      const auto first = static_cast<std::uint32_t>(model.vertices.size());
-      for (const auto& [a, b] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
-        Vertex vertex;
-        for (int i = 0; i < 3; ++i) {
-          vertex.position[static_cast<std::size_t>(i)] =
-              static_cast<float>(half * (n[i] + a * u[i] + b * v[i]));
-          vertex.normal[static_cast<std::size_t>(i)] = static_cast<float>(n[i]);
-        }
-        model.vertices.push_back(vertex);
-      }
-      for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) model.indices.push_back(first + k);
-    }
-  model.parts.push_back({0, static_cast<std::uint32_t>(model.indices.size()), 0, 0});
+  test::addCube(model, half);
+  if (open) model.indices.erase(model.indices.begin() + 3 * 6, model.indices.begin() + 4 * 6);  // y = half
+  test::endPart(model, 0);
   return model;
 }
 
@@ -192,28 +148,34 @@ TEST(PathTracer, MeshesAreTheSolidsTheyEnclose) {
 // A plate without a material inside the cube: of a node of its own, or a second primitive of the cube's node.
 Model cubeWithPlate(bool ownObject, double halfWidth) {
   Model model = cube(1.5, false);
-  const Model plate = cube(1, false);
-  const auto first = static_cast<std::uint32_t>(model.vertices.size());
-  for (Vertex vertex : plate.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) vertex.position[i] *= static_cast<float>(i == 2 ? 0.2 : halfWidth);
-    model.vertices.push_back(vertex);
-  }
-  Part part = plate.parts[0];
-  part.firstIndex = static_cast<std::uint32_t>(model.indices.size());
-  for (const std::uint32_t i : plate.indices) model.indices.push_back(first + i);
+  const std::size_t first = model.vertices.size();
+  test::addCube(model, 1);
+  for (std::size_t i = first; i < model.vertices.size(); ++i)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      model.vertices[i].position[axis] *= static_cast<float>(axis == 2 ? 0.2 : halfWidth);
   model.surfaces.emplace_back();
-  part.surface = 1;
-  part.object = ownObject ? 7 : 0;
-  model.parts.push_back(part);
+  test::endPart(model, ownObject ? 7 : 0, 1);
+  return model;
+}
+
+// The plate from wall to wall as solids.
+SceneModel solidsWithPlate() {
+  const auto box = [](const glm::dvec3& half) {
+    return std::make_unique<Polyhedron>(Polyhedron::box(glm::dvec3(0), glm::dmat3(1), half));
+  };
+  SceneModel model = oneSolid(box(glm::dvec3(1.5)));
+  model.objects.push_back({box({1.6, 1.6, 0.2}), 0, {}});
   return model;
 }
 
 TEST(PathTracer, OpaqueBodiesWithinAMediumEndPaths) {
+  const SceneModel plates = solidsWithPlate();
   for (const double ior : {1.0, 1.4}) {
     const std::unique_ptr<TraceScene> whole = makeMeshScene(cube(1.5, false)),
                                       node = makeMeshScene(cubeWithPlate(true, 1)),
                                       primitive = makeMeshScene(cubeWithPlate(false, 1)),
-                                      wall = makeMeshScene(cubeWithPlate(true, 1.6));
+                                      wall = makeMeshScene(cubeWithPlate(true, 1.6)),
+                                      solids = makeSolidScene(plates);
     const auto start = whole->first({{0.3, 0.4, 9}, {0, 0, -1}}, 0);
     ASSERT_TRUE(start);
     int through = 0, past = 0;
@@ -232,34 +194,14 @@ TEST(PathTracer, OpaqueBodiesWithinAMediumEndPaths) {
       }
       through += isFar(exitOf(*whole));
       past += isFar(a);
-      ASSERT_FALSE(isFar(exitOf(*wall))) << "a plate from wall to wall lets nothing by";
+      for (const auto* closed : {&wall, &solids})
+        ASSERT_FALSE(isFar(exitOf(**closed))) << "a plate from wall to wall lets nothing by";
     }
     EXPECT_GT(through, 1000);
     EXPECT_LT(3 * past, through)
         << "the gap of 1/2 at each side is 5/9 of the section, but far from the middle";
     EXPECT_GT(past, 0);
   }
-}
-
-TEST(PathTracer, OpaqueSolidsWithinAMediumEndPathsToo) {
-  SceneModel model =
-      oneSolid(std::make_unique<Polyhedron>(Polyhedron::box(glm::dvec3(0), glm::dmat3(1), glm::dvec3(1.5))));
-  model.objects.push_back(
-      {std::make_unique<Polyhedron>(Polyhedron::box(glm::dvec3(0), glm::dmat3(1), glm::dvec3(1.6, 1.6, 0.2))),
-       0,
-       {}});
-  const auto scene = makeSolidScene(model);
-  const SurfacePoint start{{0.3, 0.4, 1.5}, {0, 0, 1}, {0, 0, 1}, 0, 1};
-  int left = 0;
-  for (std::uint64_t i = 0; i < 5000; ++i) {
-    PathRandom random(1, 0, i);
-    const auto exit = walk(*scene, skin1(1), start, random);
-    left += exit.has_value();
-    if (exit) {
-      ASSERT_GT(exit->surface.position.z, 0);
-    }
-  }
-  EXPECT_GT(left, 1000);
 }
 
 TEST(PathTracer, HolesAreFoundAndFilled) {
@@ -365,31 +307,30 @@ TEST(PathTracer, LightsAreThoseOfTheReference) {
     range = 9;
     innerConeAngle = 0.1;
     outerConeAngle = 1.2;
-    const std::pair<const char*, void (*)(Light&)> changes[] = {
+    Light other;
+    other.position = {1, 4, 0};
+    other.direction = {-0.4, -2, 0.5};
+    other.color = {0.25, 1, 2};
+    other.intensity = 7;
+    other.range = 6;
+    other.innerConeAngle = 0.02;
+    other.outerConeAngle = 0.9;
+    other.angleTable = {1, 0.25, 0.125, 0};
+    other.distanceTable = {0, 0.5, 0.125, 0.0625};
+    const auto of = [&other](auto Light::*field) -> std::function<void(Light&)> {
+      return [&other, field](Light& light) { light.*field = other.*field; };
+    };
+    const std::pair<const char*, std::function<void(Light&)>> changes[] = {
         {"none", [](Light&) {}},
-        {"position",
-         [](Light& l) {
-           l.position = {1, 4, 0};
-         }},
-        {"direction",
-         [](Light& l) {
-           l.direction = {-0.4, -2, 0.5};
-         }},
-        {"color",
-         [](Light& l) {
-           l.color = {0.25, 1, 2};
-         }},
-        {"intensity", [](Light& l) { l.intensity = 7; }},
-        {"range", [](Light& l) { l.range = 6; }},
-        {"innerConeAngle", [](Light& l) { l.innerConeAngle = 0.02; }},
-        {"outerConeAngle", [](Light& l) { l.outerConeAngle = 0.9; }},
-        {"angleTable",
-         [](Light& l) {
-           l.angleTable = {1, 0.25, 0.125, 0};
-         }},
-        {"distanceTable", [](Light& l) {
-           l.distanceTable = {0, 0.5, 0.125, 0.0625};
-         }}};
+        {"position", of(&Light::position)},
+        {"direction", of(&Light::direction)},
+        {"color", of(&Light::color)},
+        {"intensity", of(&Light::intensity)},
+        {"range", of(&Light::range)},
+        {"innerConeAngle", of(&Light::innerConeAngle)},
+        {"outerConeAngle", of(&Light::outerConeAngle)},
+        {"angleTable", of(&Light::angleTable)},
+        {"distanceTable", of(&Light::distanceTable)}};
     const glm::dvec3 unchanged = traced(plain);
     for (const auto& [field, change] : changes) {
       Light light = plain;
@@ -472,7 +413,7 @@ TEST(PathTracer, TruthIsInTheDomainOfAReplay) {
 
 TEST(PathTracer, MediaThatNoWalkKnowsAreRefusedByName) {
   const auto complaint = [](const MaterialSource& source) {
-    return pellucid::test::refusalOf([&] { traceMedia({source}, "file"); });
+    return test::refusalOf([&] { traceMedia({source}, "file"); });
   };
   EXPECT_NE(complaint(BurleyMaterial{{1, 1, 1}, {}}).find("file: materials[0]"), std::string::npos);
   EXPECT_NE(complaint(PresetMaterial{"nothing"}).find("\"nothing\""), std::string::npos);

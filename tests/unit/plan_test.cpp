@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -145,38 +144,6 @@ TEST(Plan, DebugViewsInPlaceAreWritten) {
     f.frame.options.debugView = PELLUCID_DEBUG_THICKNESS;
     EXPECT_EQ(names(f.plan()), Names{"debug view"}) << features;
   }
-}
-
-// The caller's images serve every render rect, also one that a light does not reach.
-TEST(Plan, NoRectChangesTheImages) {
-  const auto needs = [](const Frame& f) {
-    std::vector<PellucidImageNeed> all(PELLUCID_MAX_TRANSIENTS + 1);
-    auto count = static_cast<uint32_t>(all.size());
-    EXPECT_EQ(pellucidGetImageNeeds(&f.frame, &count, all.data()), PELLUCID_OK) << f.problems();
-    all.resize(count);
-    return all;
-  };
-  for (const uint32_t samples : {0u, 8u})
-    for (const PellucidReuse reuse : {PELLUCID_REUSE_NONE, PELLUCID_REUSE_ALTERNATE, PELLUCID_REUSE_ACCUMULATE}) {
-      Frame f(0);
-      f.lights[0].type = PELLUCID_LIGHT_POINT;
-      f.lights[0].position[0] = 9;
-      f.lights[0].position[2] = -10;
-      f.lights[0].range = 3;
-      f.frame.options.gatherSamples = samples;
-      f.frame.options.reuse = reuse;
-      f.frame.imageExtent[0] = f.frame.imageExtent[1] = 64;
-      const std::vector<PellucidImageNeed> whole = needs(f);
-      f.frame.options.renderRect[2] = 16;
-      f.frame.options.renderRect[3] = 64;
-      const std::vector<PellucidImageNeed> part = needs(f);
-      ASSERT_EQ(part.size(), whole.size()) << samples << ", reuse " << reuse;
-      for (size_t i = 0; i < part.size(); ++i) {
-        EXPECT_EQ(part[i].format, whole[i].format) << i;
-        EXPECT_TRUE(std::equal(part[i].extent, part[i].extent + 2, whole[i].extent)) << i;
-        EXPECT_EQ(part[i].persistent, whole[i].persistent) << i;
-      }
-    }
 }
 
 // Clip coordinates are homogeneous.
@@ -752,25 +719,6 @@ TEST(ThinWall, TransmittanceIsNotRead) {
   f.materials[1].transmittanceModel = PELLUCID_TRANSMITTANCE_LINEAR;
   EXPECT_EQ(f.plan().gatherSamples, 0u);
   EXPECT_EQ(skipped(f.plan(), "gather"), 1u);
-}
-
-TEST(ThinWall, MoreLightThanArrivesIsRefusedByName) {
-  Mixed f;
-  const auto refused = [&](const std::string& words) {
-    EXPECT_EQ(f.problems().find("materials[1]." + words), 0u) << f.problems();
-  };
-  f.materials[1].wallTransmittance[2] = 0.6f;
-  refused("wallTransmittance of channel 2 is 0.6");
-  f.materials[1].wallTransmittance[2] = -0.25f;
-  refused("wallTransmittance [2] is -0.25");
-  f.materials[1].wallTransmittance[2] = 0.5f;
-  EXPECT_EQ(f.problems(), "");
-  f.materials[1].thinWalled = 2;
-  refused("thinWalled is 2");
-  // Solids do not read it.
-  f.materials[1] = plainMaterial();
-  f.materials[1].wallTransmittance[0] = 7;
-  EXPECT_EQ(f.problems(), "");
 }
 
 // ---- Constants and shaders

@@ -130,6 +130,22 @@ class Documents(unittest.TestCase):
         page = read("docs/integration.md")
         self.holds([command for command in recorded if f"`{command}`" not in page])
 
+    def test_the_readme_names_what_the_build_needs(self):
+        """Everything that the library's build looks for."""
+        words = {"glm": "GLM", "Eigen3": "Eigen", "PELLUCID_VULKAN_INCLUDE": "the Vulkan headers",
+                 "PELLUCID_GLSLANG": "`glslangValidator`"}
+        builds = ["CMakeLists.txt", "cmake/shaders.cmake", "cmake/pellucid_target.cmake", "cmake/vulkan_headers.cmake",
+                  "module/CMakeLists.txt", "module/material/CMakeLists.txt"]
+        needed = {match[1] for _, match in found(r"find_(?:package|path|program|library)\((\w+)", builds)}
+        self.assertEqual(needed, set(words))
+        self.holds([word for word in words.values() if word not in read("README.md")])
+
+    def test_the_readme_lists_the_images(self):
+        fields = re.findall(r'"(\w+)", &PellucidFrame::\w+, (true|false)', read("module/src/images.h"))
+        rows = re.findall(r"^\| `(\w+)` \| [^|]* \| (yes|no) \|", read("README.md"), re.M)
+        self.assertGreater(len(fields), 5)
+        self.assertEqual(dict(rows), {name: "yes" if required == "true" else "no" for name, required in fields})
+
     def test_versions_agree(self):
         header, changes = read("module/include/pellucid/pellucid.h"), read("CHANGELOG.md")
         version = re.search(r'PELLUCID_VERSION "([\d.]+)"', header)[1]

@@ -1,4 +1,5 @@
-// The float64 reference end to end, without diffusion unless named: thickness, light, occlusion, output.
+// The float64 reference end to end, without diffusion unless named: light, occlusion, output. Thickness in every convention
+// of depth is the camera's (camera_test.cpp) and that of the agreement tests in tests/gpu.
 #include "reference/reference.h"
 
 #include <gtest/gtest.h>
@@ -7,10 +8,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <string>
 
 #include "common/error.h"
 #include "reference/ambient.h"
+#include "reference/translucency.h"
 #include "reference_captures.h"
 
 namespace pellucid::harness::reference {
@@ -164,123 +165,6 @@ ShadowMap mapBehindSlab() {
   return map;
 }
 
-// ---- Thickness -------------------------------------------------------------------------------------
-
-// Depths along the camera axis and the exact chord of a sphere of radius 6 at distance 100.
-struct SphereHit {
-  double front, back, chord;
-};
-
-std::optional<SphereHit> hitSphere(const glm::dvec3& origin, const glm::dvec3& unitRay) {
-  constexpr double kRadius = 6, kDistance = 100;
-  const glm::dvec3 toCenter = glm::dvec3(0, 0, unitRay.z < 0 ? -kDistance : kDistance) - origin;
-  const double along = glm::dot(toCenter, unitRay);
-  const double squared = kRadius * kRadius - glm::dot(toCenter, toCenter) + along * along;
-  if (squared <= 0.01) return std::nullopt;
-  const double half = std::sqrt(squared);
-  return SphereHit{(along - half) * std::abs(unitRay.z), (along + half) * std::abs(unitRay.z), 2 * half};
-}
-
-struct Convention {
-  const char* name;
-  Matrix clipFromView;
-  bool reversed = false, orthographic = false;
-};
-
-constexpr double kNear = 80, kFar = 120, kRange = kFar - kNear, kScale = 14;
-
-const Convention kConventions[] = {
-    {"forward",
-     {kScale, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, -kFar / kRange, -1, 0, 0, -kFar* kNear / kRange, 0}},
-    {"reversed",
-     {kScale, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, kNear / kRange, -1, 0, 0, kFar* kNear / kRange, 0},
-     true},
-    {"forward infinite", {kScale, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, -1, -1, 0, 0, -kNear, 0}},
-    {"reversed infinite", {kScale, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, 0, -1, 0, 0, kNear, 0}, true},
-    {"left-handed",
-     {kScale, 0, 0, 0, 0, -kScale, 0, 0, 0, 0, kFar / kRange, 1, 0, 0, -kFar* kNear / kRange, 0}},
-    {"off-center, y up", {kScale, 0, 0, 0, 0, kScale, 0, 0, 0.2, -0.1, 0, -1, 0, 0, kNear, 0}, true},
-    {"orthographic",
-     {0.15, 0, 0, 0, 0, -0.15, 0, 0, 0, 0, -1 / kRange, 0, 0.1, 0, -kNear / kRange, 1},
-     false,
-     true},
-    {"orthographic reversed",
-     {0.15, 0, 0, 0, 0, -0.15, 0, 0, 0, 0, 1 / kRange, 0, 0.1, 0, kFar / kRange, 1},
-     true,
-     true},
-};
-
-// The sphere seen by a camera, and its chords (-1: missed). Projects points with the matrix itself.
-struct SphereView {
-  Capture capture;
-  Image chord;
-  int hits = 0;
-};
-
-SphereView sphereSeen(const Convention& convention, PellucidDepthEncoding encoding) {
-  constexpr int kSize = 24;
-  SphereView view{facingPlane(kSize, kSize, 1), Image(kSize, kSize, 1, -1.0f)};
-  Capture& c = view.capture;
-  c.clipFromView = convention.clipFromView;
-  c.frontDepth.encoding = c.backDepth.encoding = encoding;
-  const float empty = encoding == PELLUCID_DEPTH_VIEW_Z ? kNoDepth : convention.reversed ? 0.0f : 1.0f;
-  c.frontDepth.image = c.backDepth.image = Image(kSize, kSize, 1, empty);
-  const glm::dmat4 m = toMatrix(convention.clipFromView);
-  const double forward = m[2][3] > 0 ? 1 : -1;
-  const auto stored = [&](double depth) {
-    const double device = (m[2][2] * forward * depth + m[3][2]) / (m[2][3] * forward * depth + m[3][3]);
-    return static_cast<float>(encoding == PELLUCID_DEPTH_VIEW_Z ? depth : device);
-  };
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const glm::dvec2 ndc((x + 0.5) / kSize * 2 - 1, (y + 0.5) / kSize * 2 - 1);
-      const glm::dvec2 scale(m[0][0], m[1][1]);
-      glm::dvec3 origin(0), ray(0, 0, forward);
-      if (convention.orthographic)
-        origin = glm::dvec3((ndc - glm::dvec2(m[3])) / scale, 0);
-      else  // at view z = forward, where w = 1
-        ray = glm::normalize(glm::dvec3((ndc - forward * glm::dvec2(m[2])) / scale, forward));
-      const std::optional<SphereHit> hit = hitSphere(origin, ray);
-      if (!hit) continue;
-      *c.frontDepth.image.at(x, y) = stored(hit->front);
-      *c.backDepth.image.at(x, y) = stored(hit->back);
-      *view.chord.at(x, y) = static_cast<float>(hit->chord);
-      ++view.hits;
-    }
-  return view;
-}
-
-// Perspective chord 2 sqrt(R^2 - D^2 sin^2 phi), orthographic 2 sqrt(R^2 - rho^2): from device depths
-// and from viewZ. Float device depths around 0.5 resolve 40 mm to about 1e-5.
-TEST(Reference, SphereThicknessInEveryDepthConvention) {
-  for (const Convention& convention : kConventions)
-    for (const PellucidDepthEncoding encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z}) {
-      const SphereView sphere = sphereSeen(convention, encoding);
-      EXPECT_GT(sphere.hits, 100) << convention.name;
-      const Image thickness = debugView(sphere.capture, PELLUCID_DEBUG_THICKNESS);
-      for (std::size_t i = 0; i < thickness.pixels(); ++i)
-        EXPECT_NEAR(thickness.data[3 * i], sphere.chord.data[i], 1e-4) << convention.name << " pixel " << i;
-    }
-}
-
-// The cleared value, what lies beyond 0..1 and what is not a number hold no surface; the near end does.
-TEST(Reference, EmptyDepths) {
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const Convention& convention : kConventions) {
-    const Camera camera(convention.clipFromView, 8, 8);
-    const glm::dmat4 m = toMatrix(convention.clipFromView);
-    const double z = (m[2][3] > 0 ? 1 : -1) * kNear;
-    const float nearest = static_cast<float>(std::round((m[2][2] * z + m[3][2]) / (m[2][3] * z + m[3][3])));
-    EXPECT_NEAR(camera.planarDepth(nearest, PELLUCID_DEPTH_DEVICE).value_or(0), kNear, 1e-9)
-        << convention.name;
-    EXPECT_FALSE(camera.planarDepth(1 - nearest, PELLUCID_DEPTH_DEVICE)) << convention.name;
-    for (const float outside : {-0.5f, 1.5f, nan})
-      EXPECT_FALSE(camera.planarDepth(outside, PELLUCID_DEPTH_DEVICE)) << convention.name << " " << outside;
-    for (const float nothing : {0.0f, -1.0f, 1e9f, std::numeric_limits<float>::infinity(), nan})
-      EXPECT_FALSE(camera.planarDepth(nothing, PELLUCID_DEPTH_VIEW_Z)) << convention.name << " " << nothing;
-  }
-}
-
 // One pixel that is infinite, NaN or negative has no light, and leaves its surroundings as they are.
 TEST(Reference, InfinityInInputsCountsAsNaNDoes) {
   const Capture plane = facingPlane(24, 24, 0.5);
@@ -296,60 +180,6 @@ TEST(Reference, InfinityInInputsCountsAsNaNDoes) {
   EXPECT_GT(expected.at(12, 12)[1], expected.at(12, 12)[0]);
 }
 
-TEST(Reference, WedgeAndHollowSphereThickness) {
-  Capture c = facingPlane(32, 1, 0.5);
-  c.backDepth.image = Image(32, 1, 1);
-  const double slope = std::tan(0.3);
-  for (int x = 0; x < 32; ++x) {
-    const double fromApex = planePoint(c, x + 0.5, 0.5).x + 8;
-    *c.backDepth.image.at(x, 0) = static_cast<float>(100 + fromApex * slope);
-  }
-  Image view = debugView(c, PELLUCID_DEBUG_THICKNESS);
-  for (int x = 0; x < 32; ++x) EXPECT_NEAR(view.at(x, 0)[0], (x + 0.5) * 0.5 * slope, 1e-5);
-
-  // The nearest back face of a hollow sphere is the cavity's.
-  const double outer = 8, inner = 5;
-  for (int x = 0; x < 32; ++x) {
-    const double rho = planePoint(c, x + 0.5, 0.5).x;
-    const double front = -std::sqrt(outer * outer - rho * rho);
-    const double back = std::abs(rho) < inner ? -std::sqrt(inner * inner - rho * rho) : -front;
-    *c.frontDepth.image.at(x, 0) = static_cast<float>(100 + front);
-    *c.backDepth.image.at(x, 0) = static_cast<float>(100 + back);
-  }
-  view = debugView(c, PELLUCID_DEBUG_THICKNESS);
-  EXPECT_NEAR(view.at(16, 0)[0], std::sqrt(64 - 0.0625) - std::sqrt(25 - 0.0625), 2e-5);
-  EXPECT_NEAR(view.at(30, 0)[0], 2 * std::sqrt(64 - 7.25 * 7.25), 2e-5);
-}
-
-// Mean of e^{-s t} over an orthographic sphere; s = 2 / mm. The pixel grid's own error is O(pixel^2).
-TEST(Reference, MeanTransmittanceOfASphere) {
-  constexpr int kSize = 400;
-  const double radius = 1.5, pixel = 2 * radius / kSize, s = 2;
-  Capture c = facingPlane(kSize, kSize, pixel);
-  c.backDepth.image = Image(kSize, kSize, 1);
-  c.lights.push_back(backLight());
-  for (int y = 0; y < kSize; ++y)
-    for (int x = 0; x < kSize; ++x) {
-      const double rho = glm::length(planePoint(c, x + 0.5, y + 0.5));
-      const double half = rho < radius ? std::sqrt(radius * radius - rho * rho) : 0;
-      c.material[static_cast<std::size_t>(kSize * y + x)] = rho < radius;
-      *c.frontDepth.image.at(x, y) = static_cast<float>(100 - half);
-      *c.backDepth.image.at(x, y) = static_cast<float>(100 + half);
-    }
-  Settings settings;
-  settings.features = PELLUCID_FEATURE_TRANSLUCENCY;
-  settings.debugView = PELLUCID_DEBUG_TRANSMITTANCE;
-  settings.translucency.chordThickness = true;
-  const Image view = compute(c, {burleyMaterial(1)}, settings).image;
-  double sum = 0, count = 0;
-  for (std::size_t i = 0; i < view.pixels(); ++i)
-    if (c.material[i]) sum += view.data[3 * i], ++count;
-  const double sr = s * radius;
-  EXPECT_NEAR(sum / count, (1 - (1 + 2 * sr) * std::exp(-2 * sr)) / (2 * sr * sr), 1e-4);
-}
-
-// ---- Light and shadow ------------------------------------------------------------------------------
-
 TEST(Reference, SlabTransmitsThroughTheReflectance) {
   Capture c = backLitSlab();
   for (const bool withMap : {false, true}) {
@@ -359,6 +189,14 @@ TEST(Reference, SlabTransmitsThroughTheReflectance) {
   }
   c.metersPerUnit = 0.0005;
   EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_THICKNESS).at(2, 1)[1], 2, 1e-6);
+}
+
+TEST(Reference, SurfaceNearerThanTheMapHasThicknessZero) {
+  Capture c = backLitSlab();
+  c.lights[0].shadowMaps = {mapBehindSlab()};
+  c.lights[0].shadowMaps[0].depth.image = Image(8, 8, 1, 105.0f);
+  EXPECT_EQ(debugView(c, PELLUCID_DEBUG_THICKNESS).at(1, 1)[1], 0);
+  EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], 3 / 0.5, 1e-6);
 }
 
 // Light 30 degrees off the normal: the light's path through the slab is longer, its cosine smaller; the
@@ -408,52 +246,6 @@ TEST(Reference, OccluderInFrontOfTheBackFace) {
   EXPECT_NEAR(camera.at(0, 0)[0], 1 - 0.9 * 0.9, 1e-6)
       << "texels beside the occluder have a tenth along each axis";
 }
-
-TEST(Reference, SurfaceNearerThanTheMapHasThicknessZero) {
-  Capture c = backLitSlab();
-  c.lights[0].shadowMaps = {mapBehindSlab()};
-  c.lights[0].shadowMaps[0].depth.image = Image(8, 8, 1, 105.0f);
-  EXPECT_EQ(debugView(c, PELLUCID_DEBUG_THICKNESS).at(1, 1)[1], 0);
-  EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], 3 / 0.5, 1e-6);
-}
-
-// Point light 100 mm behind the slab's back face with a perspective map, in all three encodings.
-TEST(Reference, PointLightMapEncodingsAgree) {
-  for (const PellucidDepthEncoding encoding :
-       {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_VIEW_Z, PELLUCID_DEPTH_DISTANCE}) {
-    Capture c = backLitSlab();
-    Light& light = c.lights[0];
-    light.type = PELLUCID_LIGHT_POINT;
-    light.position = {0, 0, -204};
-    light.shadowMaps = {mapBehindSlab()};
-    ShadowMap& map = light.shadowMaps[0];
-    const double nearPlane = 10;
-    map.clipFromWorld = {-8, 0, 0, 0, 0, 8, 0, 0, 0, 0, 0, 1, 0, 0, nearPlane, 204};
-    map.depth.encoding = encoding;
-    const float device = static_cast<float>(nearPlane / 100);
-    // On the axis planar and radial distances agree; off it only the planar encodings are constant.
-    map.depth.image = Image(8, 8, 1, encoding == PELLUCID_DEPTH_DEVICE ? device : 100.0f);
-    const Image view = debugView(c, PELLUCID_DEBUG_THICKNESS);
-    for (int x = 0; x < 4; ++x) {
-      const glm::dvec2 p = planePoint(c, x + 0.5, 0.5);
-      const double distance = std::sqrt(p.x * p.x + p.y * p.y + 104.0 * 104.0);
-      const double expected = encoding == PELLUCID_DEPTH_DISTANCE ? distance - 100 : 4 * distance / 104;
-      EXPECT_NEAR(view.at(x, 0)[1], expected, 2e-5) << encoding << " x " << x;
-      const double irradiance = 3 * 104 / std::pow(distance, 3) * std::exp(-2 * expected) / 0.5;
-      EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(x, 0)[0] / irradiance, 1, 1e-4);
-    }
-  }
-}
-
-TEST(Reference, LightTurnsWithTheCamera) {
-  Capture c = backLitSlab();
-  // View from world: a quarter turn about y.
-  c.viewFromWorld = {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1};
-  c.lights[0].direction = {1, 0, 0};
-  EXPECT_NEAR(debugView(c, PELLUCID_DEBUG_IRRADIANCE).at(1, 1)[0], 3 * std::exp(-8.0) / 0.5, 1e-7);
-}
-
-// ---- Transmittance models and output ---------------------------------------------------------------
 
 TEST(Reference, TransmittanceModels) {
   Capture c = backLitSlab();
@@ -514,6 +306,74 @@ TEST(Reference, BadInputIsRefused) {
     change(c);
     EXPECT_THROW(compute(c, {burleyMaterial(1)}, Settings{}), InputError) << &change - changes;
   }
+}
+
+// ---- Minimum dots: entries and blends by light direction
+
+Light fromDirection(double x, double y, double z) {
+  Light light;
+  light.direction = {-x, -y, -z};
+  return light;
+}
+
+// The face looks along +x, so that sideways, cross(up, face), is -z.
+TranslucencySettings azimuthTable() {
+  TranslucencySettings s;
+  s.angleModel = kMinimumDotAzimuth;
+  for (int i = 0; i < 36; ++i) s.minimumDotTable.push_back(static_cast<float>(-i) / 64);
+  s.faceVector = {2, 0.5f, 0};  // its part along up does not count
+  return s;
+}
+
+TEST(MinimumDot, AzimuthEntriesAndWrap) {
+  const TranslucencySettings s = azimuthTable();
+  const auto at = [&](double degrees, double height) {
+    const double a = degrees * 3.14159265358979 / 180;
+    return minimumDot(s, fromDirection(std::cos(a), height, -std::sin(a)));
+  };
+  for (int i = 0; i < 36; ++i) EXPECT_NEAR(at(10 * i, 0.3), -i / 64.0, 1e-9) << i;
+  EXPECT_NEAR(at(45, 0), -4.5 / 64, 1e-9);
+  EXPECT_NEAR(at(355, 0), -17.5 / 64, 1e-9) << "half way between the last entry and the first";
+}
+
+TEST(MinimumDot, SphereEntriesAreOctahedral) {
+  TranslucencySettings s;
+  s.angleModel = kMinimumDotSphere;
+  //                  -s,-f: down      -f        down
+  s.minimumDotTable = {-0.9f, -0.1f, -0.9f, -0.2f, -0.5f, -0.3f, -0.9f, -0.4f, -0.9f};
+  const auto at = [&](double x, double y, double z) {
+    return minimumDot(s, fromDirection(x, y, z));
+  };
+  EXPECT_NEAR(at(0, 1, 0), -0.5, 1e-7);
+  EXPECT_NEAR(at(0, -1, 0), -0.9, 1e-7);
+  EXPECT_NEAR(at(0, 0, 1), -0.4, 1e-7) << "where the face looks";
+  EXPECT_NEAR(at(0, 0, -1), -0.1, 1e-7);
+  EXPECT_NEAR(at(1, 0, 0), -0.3, 1e-7) << "sideways";
+  EXPECT_NEAR(at(-1, 0, 0), -0.2, 1e-7);
+  EXPECT_NEAR(at(0, 1, 1), -0.45, 1e-7);
+}
+
+TEST(MinimumDot, PointLightsAreSeenFromTheCenter) {
+  TranslucencySettings s = azimuthTable();
+  s.objectCenter = {10, 0, 5};
+  Light light;
+  light.type = PELLUCID_LIGHT_POINT;
+  light.position = {10, 3, 1};  // sideways of the center: 90 degrees
+  EXPECT_NEAR(minimumDot(s, light), -9 / 64.0, 1e-9);
+}
+
+TEST(MinimumDot, TableMustFit) {
+  TranslucencySettings s;
+  s.angleModel = kMinimumDotSphere;
+  s.minimumDotTable.assign(10, 0);
+  EXPECT_THROW(minimumDot(s, fromDirection(0, 0, 1)), InputError);
+  s.minimumDotTable.assign(9, 0);
+  EXPECT_EQ(minimumDot(s, fromDirection(0, 0, 1)), 0);
+  s.minimumDotTable[4] = 0.5f;
+  EXPECT_THROW(minimumDot(s, fromDirection(0, 0, 1)), InputError);
+  s.minimumDotTable[4] = 0;
+  s.faceVector = {0, -2, 0};
+  EXPECT_THROW(minimumDot(s, fromDirection(0, 0, 1)), InputError);
 }
 
 }  // namespace

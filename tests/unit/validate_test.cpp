@@ -95,6 +95,12 @@ const Violation kViolations[] = {
      }},
     {"Weights", "materials[0].gaussianWeight", "sums to",
      [](Frame& f) { f.material.gaussianWeight[0][0] = 0.9f; }},
+    {"WallBrighterThanItsLight", "materials[0].wallTransmittance", "of channel 2 is 0.6",
+     [](Frame& f) {
+       f.material.thinWalled = 1;
+       std::fill_n(f.material.reflectance, 3, 0.5f);
+       f.material.wallTransmittance[2] = 0.6f;
+     }},
     {"ShadowSingular", "shadowMaps[0].clipFromWorld", "inverted",
      [](Frame& f) { f.maps[0].clipFromWorld[0] = 0; }},
     {"ShadowTile", "shadowMaps[0].options.offset", "[1] is 65500 with an extent of 64",
