@@ -225,7 +225,7 @@ SphereView sphereSeen(const Convention& convention, PellucidDepthEncoding encodi
   c.frontDepth.encoding = c.backDepth.encoding = encoding;
   const float empty = encoding == PELLUCID_DEPTH_VIEW_Z ? kNoDepth : convention.reversed ? 0.0f : 1.0f;
   c.frontDepth.image = c.backDepth.image = Image(kSize, kSize, 1, empty);
-  const glm::dmat4 m = toMatrix(convention.clipFromView);
+  const glm::dmat4 m = toGlm(convention.clipFromView);
   const double forward = m[2][3] > 0 ? 1 : -1;
   const auto stored = [&](double depth) {
     const double device = (m[2][2] * forward * depth + m[3][2]) / (m[2][3] * forward * depth + m[3][3]);
@@ -268,7 +268,7 @@ TEST(Reference, EmptyDepths) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const Convention& convention : kConventions) {
     const Camera camera(convention.clipFromView, 8, 8);
-    const glm::dmat4 m = toMatrix(convention.clipFromView);
+    const glm::dmat4 m = toGlm(convention.clipFromView);
     const double z = (m[2][3] > 0 ? 1 : -1) * kNear;
     const float nearest = static_cast<float>(std::round((m[2][2] * z + m[3][2]) / (m[2][3] * z + m[3][3])));
     EXPECT_NEAR(camera.planarDepth(nearest, PELLUCID_DEPTH_DEVICE).value_or(0), kNear, 1e-9)
