@@ -50,9 +50,8 @@ DeviceOptions deviceOptions(const ApplicationOptions& options, const Desktop* de
 
 // The screen as an image, which the window shows and screenshots are made of.
 std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) {
-  return std::make_unique<RenderTarget>(
-      device, width, height,
-      std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
+  const VkClearColorValue gray{.float32 = {0.08f, 0.08f, 0.09f, 1}};
+  return std::make_unique<RenderTarget>(device, RenderTarget::Shape{width, height, {{kScreenFormat, gray}}});
 }
 
 class Application {

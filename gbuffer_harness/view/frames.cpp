@@ -22,21 +22,20 @@ namespace {
 // ways that no engine's images have here: distances in shadow maps, maps drawn as an engine does or in one
 // image, other formats than floats and halves.
 std::shared_ptr<const InputImages> drawnInputs(const DrawnFrame& drawn, const ReplaySettings& settings) {
-  const RasterOptions& options = drawn.options();
-  const DrawnFrame::Images& images = drawn.images();
+  const RasterOptions& options = drawn.options;
   if (!areOnDevice(options) || preExposureOf(settings) != 1 || settings.materialMask != 0)
-    return std::make_shared<const InputImages>(drawn.device(), drawn.capture(), settings);
+    return std::make_shared<const InputImages>(drawn.device, drawn.capture(), settings);
   InputImages::Images inputs;
   inputs.shape.backDepth = drawn.hasBackDepth();
   inputs.shape.albedo = true;
-  inputs.frontDepth = images.frontDepth;
-  if (drawn.hasBackDepth()) inputs.backDepth = images.backDepth;
-  const auto& front = images.front.target;
+  inputs.frontDepth = drawn.frontDepth;
+  if (drawn.hasBackDepth()) inputs.backDepth = drawn.backDepth;
+  const auto& front = drawn.front.target;
   inputs.albedo = sharedImage(front, FrontTarget::kAlbedoObject);
   inputs.material = sharedImage(front, FrontTarget::kMaterial);
   inputs.irradiance = drawn.irradianceIn(irradianceFormat(settings));
   const int size = options.shadowSize;
-  for (const std::vector<DrawnMap>& maps : images.maps)
+  for (const std::vector<DrawnMap>& maps : drawn.maps)
     for (const DrawnMap& map : maps) {
       FrameShape::Map& place = inputs.shape.maps.emplace_back();
       place.extent = {size, size};
@@ -77,7 +76,7 @@ VkRect2D rectOf(int x, int y, int width, int height) {
 double coveredPartOf(const Scene& scene) {
   const Capture& capture = scene.capture;
   const double pixels = static_cast<double>(capture.width) * capture.height;
-  if (scene.drawn) return scene.drawn->counts().material / pixels;
+  if (scene.drawn) return scene.drawn->counts.material / pixels;
   return 1 - static_cast<double>(std::count(capture.material.begin(), capture.material.end(), 0)) / pixels;
 }
 
@@ -217,7 +216,7 @@ const std::vector<std::uint8_t>& ViewFrames::material() const {
 
 const std::vector<DispatchTime>& ViewFrames::sceneTimes() const {
   static const std::vector<DispatchTime> kNone;
-  return scene_.drawn ? scene_.drawn->times() : kNone;
+  return scene_.drawn ? scene_.drawn->times : kNone;
 }
 
 const Image& ViewFrames::image(Shown shown) const {
