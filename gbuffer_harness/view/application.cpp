@@ -76,7 +76,7 @@ public:
     int left = kFramesAfterInput;
     while (!done()) {
       if (window_) {
-        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure;
+        const bool idle = left == 0 && options_.frames == 0;
         window_->events(idle);
         if (idle) left = kFramesAfterInput;
       }
@@ -131,17 +131,16 @@ private:
     ++report_.frames;
     gui_->poll(width_, height_);
     Changes changes;
-    gui_->begin();
+    ImGui::NewFrame();
     changes.add(controls_.apply(state_, input(), *source_, picture()));
     changes.add(drawPanel(state_, panel_, *frames_, *source_,
                           {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
     followWindow(changes);
-    changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture();
     const ImVec2 cursor = ImGui::GetIO().MousePos;
     drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
-    gui_->end();
+    ImGui::Render();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
       display_->draw(commandBuffer, *frames_, state_.display, picture, panel_.colors);
@@ -241,7 +240,6 @@ void Application::open(const SceneToView& scene) {
   source_ = std::move(source);
   state_ = std::move(state);
   panel_.colors = falseColorsOf(state_.display, *frames_);
-  panel_.cost = {};
 }
 
 void Application::save(const std::filesystem::path& capture) {

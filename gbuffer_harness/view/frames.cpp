@@ -1,7 +1,6 @@
 #include "view/frames.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <memory>
@@ -119,7 +118,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   const bool upload = scene || state.settings.outputFormat != format_;
   const bool compile = changes.materials || !inputs_;
   const bool frames = upload || compile || changes.frame;
-  const auto start = std::chrono::steady_clock::now();
   std::optional<Scene> rendered;
   if (scene) {
     rendered = source_.render(state);
@@ -133,8 +131,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
       !upload      ? inputs_
       : seen.drawn ? drawnInputs(*seen.drawn, state.settings)
                    : std::make_shared<const InputImages>(device_, seen.capture, state.settings);
-  const double milliseconds =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const std::vector<MaterialSource> sources = source_.materials(state);
   std::vector<PellucidMaterial> materials = materials_;
   if (compile) {
@@ -170,7 +166,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     scene_ = std::move(*rendered);
     hasSurfaces_ = hasMaps_ = hasMaterial_ = !scene_.drawn;
     coveredPart_ = coveredPartOf(scene_);
-    sceneMilliseconds_ = milliseconds;
   }
   scene_.capture.materials = sources;
   inputs_ = inputs;

@@ -63,10 +63,6 @@ void Gui::poll(int width, int height) {
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
 }
 
-void Gui::begin() { ImGui::NewFrame(); }
-
-void Gui::end() { ImGui::Render(); }
-
 void Gui::record(VkCommandBuffer commandBuffer) const {
   ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commandBuffer);
 }
