@@ -62,8 +62,7 @@ void paintChecker(Capture& capture, double side) {
         const double u = x + (i % kPoints + 0.5) / kPoints, v = y + (i / kPoints + 0.5) / kPoints;
         lit += static_cast<int>(std::floor(c * u + s * v) + std::floor(c * v - s * u)) % 2 == 0 ? 1 : 0;
       }
-      const bool covered = capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
-                                            static_cast<size_t>(x)] != 0;
+      const bool covered = capture.material[reference::pixelNumber(capture.irradiance, x, y)] != 0;
       for (int k = 0; k < 3; ++k)
         capture.irradiance.at(x, y)[k] = covered ? static_cast<float>(lit) / (kPoints * kPoints) : 0;
     }

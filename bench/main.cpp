@@ -1,11 +1,10 @@
 // pellucid_bench: GPU times of the module and of others beside their errors. What is timed is checked first.
 #include <cstdio>
-#include <set>
 
 #include "commit.h"
 #include "common/error.h"
+#include "common/whole_file.h"
 #include "options.h"
-#include "results.h"
 #include "sections.h"
 
 namespace {
@@ -14,64 +13,43 @@ using namespace pellucid::harness;
 using namespace pellucid::bench;
 using Json = nlohmann::json;
 
-class Run {
-public:
-  explicit Run(const Options& options)
-      : options_(options),
-        device_({options.device, false}),
-        software_(device_.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU),
-        repeat_(options.repeat.value_or(software_ ? 3 : 7)),
-        table_(options.json == "-" ? stderr : stdout),
-        report_(table_) {}
-
-  // `keep` gets all results so far after each section: a run that is killed keeps what it has measured.
-  template <class Keep>
-  Json measure(const Keep& keep) {
-    std::fprintf(table_, "%s, commit %s, median of %d\n", device_.description().c_str(), PELLUCID_COMMIT,
-                 repeat_);
-    json_ = {{"device", device_.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat_}};
-    // Bad files are named before the context takes its time.
-    std::vector<FrameSource> sources;
-    if (wanted("frames")) sources = frameSources(device_, options_.frames);
-    if (options_.tables != std::set<std::string>{"context"}) {
-      measureTimes(sources);
-      keep(withResults());
-    }
-    if (wanted("context")) measureContextCreation(options_.device, repeat_, report_);
-    return withResults();
-  }
-
-private:
-  bool wanted(const char* name) const { return options_.tables.count(name) > 0; }
-
-  Json withResults() const {
-    Json json = json_;
-    json["results"] = report_.rows();
-    return json;
-  }
-
-  void measureTimes(const std::vector<FrameSource>& sources) {
-    const Context context(device_);
-    if (wanted("paths")) measurePaths(device_, context, options_.frames, repeat_, report_);
-    if (wanted("frames")) measureFrames(device_, context, sources, options_.frames, repeat_, report_);
-  }
-
-  const Options& options_;
-  Device device_;
-  bool software_;
-  int repeat_;
-  std::FILE* table_;
-  Report report_;
-  Json json_;
-};
+// To a file, or to standard output for "-".
+void writeResults(const Json& head, const Json& rows, const std::string& file) {
+  // One line a row, so that files of a thousand rows stay readable, and so do their differences.
+  std::string text = head.dump(1);
+  text.resize(text.rfind('\n'));
+  text += ",\n \"results\": [";
+  for (size_t i = 0; i < rows.size(); ++i)
+    text += std::string(i == 0 ? "\n  " : ",\n  ").append(rows[i].dump());
+  text += "\n ]\n}\n";
+  if (file == "-")
+    std::fputs(text.c_str(), stdout);
+  else
+    writeWholeText(file, text);
+}
 
 int run(const Options& options) {
   if (options.createContext) return createContext(options);
-  const auto keep = [&](const Json& json) {
-    if (!options.json.empty() && options.json != "-") writeResults(json, options.json);
-  };
-  const Json json = Run(options).measure(keep);
-  if (!options.json.empty()) writeResults(json, options.json);
+  Device device({options.device, false});
+  const bool software = device.properties().deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+  const int repeat = options.repeat.value_or(software ? 3 : 7);
+  std::FILE* const table = options.json == "-" ? stderr : stdout;
+  Report report(table);
+  std::fprintf(table, "%s, commit %s, median of %d\n", device.description().c_str(), PELLUCID_COMMIT, repeat);
+  const Json head = {{"device", device.description()}, {"commit", PELLUCID_COMMIT}, {"repeat", repeat}};
+  const bool paths = options.tables.count("paths") > 0, frames = options.tables.count("frames") > 0;
+  // Bad files are named before the context takes its time.
+  std::vector<FrameSource> sources;
+  if (frames) sources = frameSources(device, options.frames);
+  if (paths || frames) {
+    const Context context(device);
+    if (paths) measurePaths(device, context, options.frames, repeat, report);
+    if (frames) measureFrames(device, context, sources, options.frames, repeat, report);
+    // A run that is killed keeps what it has measured.
+    if (!options.json.empty() && options.json != "-") writeResults(head, report.rows(), options.json);
+  }
+  if (options.tables.count("context") > 0) measureContextCreation(options.device, repeat, report);
+  if (!options.json.empty()) writeResults(head, report.rows(), options.json);
   return 0;
 }
 

@@ -39,9 +39,7 @@ Image evaluate(const Capture& capture, const Transmitted& transmitted) {
   for (int y = 0; y < capture.height; ++y)
     for (int x = 0; x < capture.width; ++x) {
       const auto surface = surfaces.at(x, y);
-      if (!surface || capture.material[static_cast<size_t>(y) * static_cast<size_t>(capture.width) +
-                                       static_cast<size_t>(x)] == 0)
-        continue;
+      if (!surface || capture.material[reference::pixelNumber(result, x, y)] == 0) continue;
       const glm::dvec3 position = surfaces.worldFromView() * glm::dvec4(surface->position, 1);
       const glm::dvec3 normal = glm::dmat3(surfaces.worldFromView()) * surface->normal;
       for (const Light& light : capture.lights) {

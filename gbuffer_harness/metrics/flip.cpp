@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <glm/glm.hpp>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "common/parallel.h"
@@ -14,7 +16,7 @@ namespace pellucid::harness {
 
 namespace {
 
-using Color = std::array<double, 3>;
+using Color = glm::dvec3;
 
 struct Plane {
   int width, height;
@@ -26,29 +28,15 @@ struct Plane {
   }
 };
 
-// IEC 61966-2-1.
-constexpr std::array<Color, 3> kXyzFromRgb = {{{0.4123907993, 0.3575843394, 0.1804807884},
-                                               {0.2126390059, 0.7151686788, 0.0721923154},
-                                               {0.0193308187, 0.1191947798, 0.9505321522}}};
-constexpr std::array<Color, 3> kRgbFromXyz = {{{3.2409699419, -1.5373831776, -0.4986107603},
-                                               {-0.9692436363, 1.8759675015, 0.0415550574},
-                                               {0.0556300797, -0.2039769589, 1.0569715142}}};
-
-Color times(const std::array<Color, 3>& matrix, const Color& v) {
-  Color result;
-  for (std::size_t i = 0; i < 3; ++i)
-    result[i] = matrix[i][0] * v[0] + matrix[i][1] * v[1] + matrix[i][2] * v[2];
-  return result;
-}
-
-const Color kWhite = times(kXyzFromRgb, {1, 1, 1});
+// IEC 61966-2-1; columns.
+const glm::dmat3 kXyzFromRgb(0.4123907993, 0.2126390059, 0.0193308187, 0.3575843394, 0.7151686788,
+                             0.1191947798, 0.1804807884, 0.0721923154, 0.9505321522);
+const glm::dmat3 kRgbFromXyz(3.2409699419, -0.9692436363, 0.0556300797, -1.5373831776, 1.8759675015,
+                             -0.2039769589, -0.4986107603, 0.0415550574, 1.0569715142);
+const Color kWhite = kXyzFromRgb * Color(1);
 
 // Relative to the display's white.
-Color relativeXyz(const Color& rgb) {
-  Color xyz = times(kXyzFromRgb, rgb);
-  for (std::size_t i = 0; i < 3; ++i) xyz[i] /= kWhite[i];
-  return xyz;
-}
+Color relativeXyz(const Color& rgb) { return kXyzFromRgb * rgb / kWhite; }
 
 // The linearized CIELAB that the contrast sensitivities are known in: luminance, red-green, blue-yellow.
 Color opponentFromRgb(const Color& rgb) {
@@ -58,14 +46,15 @@ Color opponentFromRgb(const Color& rgb) {
 
 Color rgbFromOpponent(const Color& v) {
   const double y = (v[0] + 16) / 116;
-  return times(kRgbFromXyz, {kWhite[0] * (y + v[1] / 500), kWhite[1] * y, kWhite[2] * (y - v[2] / 200)});
+  return kRgbFromXyz * (kWhite * Color(y + v.y / 500, y, y - v.z / 200));
 }
 
 // CIELAB whose a and b shrink with the lightness (Hunt 1952): colors of dark pixels are hardly seen.
 Color huntLabFromRgb(const Color& rgb) {
   constexpr double kDelta = 6.0 / 29;
   Color f = relativeXyz(rgb);
-  for (double& t : f) t = t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4.0 / 29;
+  for (int i = 0; i < 3; ++i)
+    f[i] = f[i] > kDelta * kDelta * kDelta ? std::cbrt(f[i]) : f[i] / (3 * kDelta * kDelta) + 4.0 / 29;
   const double lightness = 116 * f[1] - 16;
   return {lightness, 0.01 * lightness * 500 * (f[0] - f[1]), 0.01 * lightness * 200 * (f[1] - f[2])};
 }
@@ -77,6 +66,8 @@ double hyab(const Color& a, const Color& b) {
 
 // Weights of a filter along one axis, from -radius to radius.
 using Kernel = std::vector<double>;
+
+double sumOf(const Kernel& kernel) { return std::accumulate(kernel.begin(), kernel.end(), 0.0); }
 
 Kernel kernelOf(int radius, const std::function<double(int)>& weight) {
   Kernel kernel;
@@ -91,13 +82,12 @@ Plane filter(const Plane& image, const std::array<Kernel, 3>& alongX, const std:
     const int radius = static_cast<int>(kernels[0].size()) / 2;
     parallelRows(from.height, 0, [&](int y) {
       for (int x = 0; x < from.width; ++x) {
-        Color sum = {};
+        Color sum(0);
         for (int i = -radius; i <= radius; ++i) {
           const int px = horizontal ? std::clamp(x + i, 0, from.width - 1) : x;
           const int py = horizontal ? y : std::clamp(y + i, 0, from.height - 1);
-          const Color& value = from.data[from.index(px, py)];
-          for (std::size_t c = 0; c < 3; ++c)
-            sum[c] += kernels[c][static_cast<std::size_t>(i + radius)] * value[c];
+          const auto k = static_cast<std::size_t>(i + radius);
+          sum += Color(kernels[0][k], kernels[1][k], kernels[2][k]) * from.data[from.index(px, py)];
         }
         to.data[to.index(x, y)] = sum;
       }
@@ -134,21 +124,15 @@ Plane filterBySensitivity(const Plane& opponent, double pixelsPerDegree) {
     };
     first[c] = gaussian(s.b1);
     second[c] = gaussian(s.b2);
-    const auto sum = [](const Kernel& kernel) {
-      double total = 0;
-      for (const double w : kernel) total += w;
-      return total;
-    };
     // In two dimensions each Gaussian is a product of two; all weights of the sum add up to 1.
     const double w1 = s.a1 * std::sqrt(kPi / s.b1), w2 = s.a2 * std::sqrt(kPi / s.b2);
-    const double total = w1 * sum(first[c]) * sum(first[c]) + w2 * sum(second[c]) * sum(second[c]);
+    const double total = w1 * std::pow(sumOf(first[c]), 2) + w2 * std::pow(sumOf(second[c]), 2);
     for (double& w : first[c]) w *= std::sqrt(w1 / total);
     for (double& w : second[c]) w *= std::sqrt(w2 / total);
   }
   Plane result = filter(opponent, first, first);
   const Plane added = filter(opponent, second, second);
-  for (std::size_t i = 0; i < result.data.size(); ++i)
-    for (std::size_t c = 0; c < 3; ++c) result.data[i][c] += added.data[i][c];
+  for (std::size_t i = 0; i < result.data.size(); ++i) result.data[i] += added.data[i];
   return result;
 }
 
@@ -175,9 +159,7 @@ Features featuresOf(const Plane& opponent, double pixelsPerDegree) {
   const int radius = static_cast<int>(std::ceil(3 * deviation));
   const auto gaussian = [&](int i) { return std::exp(-i * i / (2 * deviation * deviation)); };
   Kernel smooth = kernelOf(radius, gaussian);
-  double total = 0;
-  for (const double w : smooth) total += w;
-  for (double& w : smooth) w /= total;
+  for (const double total = sumOf(smooth); double& w : smooth) w /= total;
   // Positive and negative weights of derivatives add up to 1 and -1.
   const auto derivative = [&](const std::function<double(int)>& weight) {
     Kernel kernel = kernelOf(radius, weight);
@@ -192,7 +174,7 @@ Features featuresOf(const Plane& opponent, double pixelsPerDegree) {
 
   Plane lightness(opponent.width, opponent.height);  // thrice, for three filters at once
   for (std::size_t i = 0; i < lightness.data.size(); ++i)
-    lightness.data[i].fill((opponent.data[i][0] + 16) / 116);
+    lightness.data[i] = Color((opponent.data[i].x + 16) / 116);
   const Plane x = filter(lightness, {first, second, smooth}, {smooth, smooth, smooth});
   const Plane y = filter(lightness, {smooth, smooth, smooth}, {first, second, smooth});
   Features features;
@@ -214,9 +196,8 @@ Plane displayed(const Image& image, double exposure) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       if (!finitePixel(image, x, y)) continue;
-      Color& color = plane.data[plane.index(x, y)];
-      for (std::size_t c = 0; c < 3; ++c)
-        color[c] = std::clamp(exposure * static_cast<double>(image.at(x, y)[c]), 0.0, 1.0);
+      const float* const rgb = image.at(x, y);
+      plane.data[plane.index(x, y)] = glm::clamp(exposure * Color(rgb[0], rgb[1], rgb[2]), 0.0, 1.0);
     }
   return plane;
 }
@@ -226,11 +207,7 @@ std::pair<Plane, Features> seen(const Image& image, double exposure, double pixe
   Plane opponent = displayed(image, exposure);
   for (Color& color : opponent.data) color = opponentFromRgb(color);
   Plane lab = filterBySensitivity(opponent, pixelsPerDegree);
-  for (Color& color : lab.data) {
-    Color rgb = rgbFromOpponent(color);
-    for (double& value : rgb) value = std::clamp(value, 0.0, 1.0);
-    color = huntLabFromRgb(rgb);
-  }
+  for (Color& color : lab.data) color = huntLabFromRgb(glm::clamp(rgbFromOpponent(color), 0.0, 1.0));
   return {std::move(lab), featuresOf(opponent, pixelsPerDegree)};
 }
 
@@ -265,9 +242,7 @@ Flip measureFlip(const Image& test, const Image& reference, const Mask& mask) {
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[i] != 0) values.push_back(map.data[i]);
   if (values.empty()) return flip;
-  double sum = 0;
-  for (const float value : values) sum += value;
-  flip.mean = sum / static_cast<double>(values.size());
+  flip.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   const auto rank = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 100);
   std::nth_element(values.begin(), rank, values.end());
   flip.p99 = *rank;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/vector.h"
+
 namespace pellucid::harness {
 
 namespace {
@@ -71,8 +73,7 @@ std::array<float, 4> visibleMiddle(const Capture& capture) {
     ++count;
   });
   if (count == 0) return {0, 0, 0, 0};
-  const glm::dvec4 middle =
-      glm::inverse(reference::toMatrix(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
+  const glm::dvec4 middle = glm::inverse(toGlm(capture.viewFromWorld)) * glm::dvec4(sum / count, 1);
   return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z), 1};
 }
 

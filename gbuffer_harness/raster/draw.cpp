@@ -181,7 +181,7 @@ public:
   const PushLayout& layout() const { return layout_; }
 
   VkPipeline of(const RenderTarget& target, const PipelineState& state) {
-    const auto [entry, isNew] = pipelines_.try_emplace({target.depthFormat(), state}, device_);
+    const auto [entry, isNew] = pipelines_.try_emplace({target.pass().depthFormat(), state}, device_);
     if (isNew) create(entry->second, target, state);
     return entry->second;
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 
 #include "kRasterDepths.h"
 #include "kRasterHalf.h"
@@ -23,6 +22,7 @@ constexpr std::uint32_t kShadowMaps = 6;  // SHADOW_MAPS
 
 constexpr VkDescriptorType kSampled = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
                            kStored = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                           kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
                            kBuffer = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
 // Push constants of shaders/depths.comp.
@@ -30,11 +30,6 @@ struct DepthPush {
   float nothing;
   std::uint32_t isDevice, greaterIsNearer, nearestBack;
 };
-
-// The bindings of shaders/irradiance.comp.
-constexpr PixelPass::Binding kBindings[] = {
-    {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}, {kSampled}, {kSampled, kShadowMaps}, {kStored}, {kSampled}};
-constexpr std::uint32_t kShadowBinding = 2, kIrradianceBinding = 3, kTrianglesBinding = 4;
 
 // The uniform block.
 struct Constants {
@@ -63,24 +58,26 @@ shared::LightConstants lightConstants(const Light& light, const glm::dmat4& view
   return constants;
 }
 
-void setShadows(Constants& constants, const Shadows& shadows, const glm::dmat4& worldFromView) {
-  for (std::size_t i = 0; i < shadows.images.size(); ++i) {
-    const ShadowImage& image = shadows.images[i];
+void setShadows(Constants& constants, const std::vector<ShadowImage>& maps, int filter,
+                const glm::dmat4& worldFromView) {
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const ShadowImage& image = maps[i];
     const glm::dmat4 shadowView = toGlm(image.viewFromWorld) * worldFromView;
     // The view is 2 / clipFromView[0] wide, at planar distance 1 if it is a perspective.
     constants.shadowViews[i] = {glm::mat4(toGlm(image.clipFromView) * shadowView),
                                 -glm::vec4(glm::transpose(shadowView)[2]),
                                 glm::vec4(static_cast<float>(2 / image.clipFromView[0] / image.size))};
   }
-  if (shadows.images.empty()) return;
-  const ShadowImage& first = shadows.images.front();
+  if (maps.empty()) return;
+  const ShadowImage& first = maps.front();
   constants.shadow = glm::vec4(first.size, first.perspective, 0, 0);
-  constants.lookup.x = static_cast<int>(shadows.images.size());
-  constants.lookup.y = first.perspective && shadows.images.size() > 1;
-  constants.lookup.z = shadows.filter;
+  constants.lookup.x = static_cast<int>(maps.size());
+  constants.lookup.y = first.perspective && maps.size() > 1;
+  constants.lookup.z = filter;
 }
 
-Constants constantsOf(const LitSurfaces& surfaces, const Light& light, const Shadows& shadows) {
+Constants constantsOf(const LitSurfaces& surfaces, const Light& light, const std::vector<ShadowImage>& maps,
+                      int filter) {
   const Matrix& clipFromView = surfaces.view.clipFromView;
   const glm::dmat4 viewFromWorld = toGlm(surfaces.view.viewFromWorld);
   Constants constants{};
@@ -91,78 +88,34 @@ Constants constantsOf(const LitSurfaces& surfaces, const Light& light, const Sha
       glm::vec4(1 / clipFromView[0], 1 / clipFromView[5], perspective ? -clipFromView[8] : clipFromView[12],
                 perspective ? -clipFromView[9] : clipFromView[13]);
   constants.lookup.w = perspective;
-  setShadows(constants, shadows, glm::inverse(viewFromWorld));
+  setShadows(constants, maps, filter, glm::inverse(viewFromWorld));
   return constants;
 }
 
-constexpr VkSpecializationMapEntry kMapsEntry{0, 0, sizeof(std::uint32_t)};
-constexpr std::uint32_t kOneMap = 1, kAllMaps = kShadowMaps;
-
-PixelPass passOf(Device& device, const std::uint32_t& maps) {
+PixelPass irradiancePass(Device& device, std::uint32_t maps) {
+  constexpr VkSpecializationMapEntry kEntry{0, 0, sizeof maps};
   return {device,
           {kRasterIrradiance, sizeof kRasterIrradiance},
-          {std::begin(kBindings), std::end(kBindings)},
+          {{kUniform}, {kSampled}, {kSampled, kShadowMaps}, {kStored}, {kSampled}},
           0,
-          {1, &kMapsEntry, sizeof maps, &maps}};
+          {1, &kEntry, sizeof maps, &maps}};
 }
 
 }  // namespace
 
-IrradiancePass::IrradiancePass(Device& device)
-    : one_(passOf(device, kOneMap)),
-      six_(passOf(device, kAllMaps)),
-      constants_(device, sizeof(Constants),
-                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
-
-void IrradiancePass::record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
-                            const Shadows& shadows) const {
-  const Constants constants = constantsOf(surfaces, light, shadows);
-  // The light before is done with the buffer: PixelPass ends with a barrier.
-  vkCmdUpdateBuffer(commands, constants_.handle(), 0, sizeof constants, &constants);
-  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
-          {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
-
-  const std::vector<ShadowImage>& images = shadows.images;
-  const PixelPass& pass = images.size() <= kOneMap ? one_ : six_;
-  const auto useInfo = [&](const PellucidImage& image) {
-    return VkDescriptorImageInfo{pass.sampler(), image.view, image.layout};
-  };
-  const auto imageInfo = [&](const GpuImage& image) { return useInfo(image.use()); };
-  const VkDescriptorBufferInfo bufferInfo{constants_.handle(), 0, VK_WHOLE_SIZE};
-  const VkDescriptorImageInfo surface = imageInfo(surfaces.normalPlanar),
-                              triangles = imageInfo(surfaces.depthNormal),
-                              target = imageInfo(surfaces.irradiance);
-  // A descriptor that is not read must be valid all the same.
-  VkDescriptorImageInfo maps[kShadowMaps];
-  for (std::size_t i = 0; i < kShadowMaps; ++i)
-    maps[i] = useInfo(i >= images.size()   ? surfaces.normalPlanar.use()
-                      : shadows.filter > 0 ? images[i].depths
-                                           : images[i].planar);
-  VkWriteDescriptorSet writes[std::size(kBindings)];
-  for (std::uint32_t i = 0; i < std::size(writes); ++i) {
-    writes[i] = {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    writes[i].dstBinding = i;
-    writes[i].descriptorCount = kBindings[i].count;
-    writes[i].descriptorType = kBindings[i].type;
-  }
-  writes[0].pBufferInfo = &bufferInfo;
-  writes[1].pImageInfo = &surface;
-  writes[kShadowBinding].pImageInfo = maps;
-  writes[kIrradianceBinding].pImageInfo = &target;
-  writes[kTrianglesBinding].pImageInfo = &triangles;
-  pass.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
-}
-
 DrawPasses::DrawPasses(Device& device)
     : targets(device),
       images(device),
-      irradiance(device),
       depths_(device, {kRasterDepths, sizeof kRasterDepths},
               {{kSampled}, {kSampled}, {kSampled}, {kSampled}, {kSampled}, {kStored}, {kStored}, {kBuffer}},
               sizeof(DepthPush)),
       reflection_(device, {kRasterReflect, sizeof kRasterReflect}, {{kStored}, {kSampled}}),
       halves_(device, {kRasterHalf, sizeof kRasterHalf}, {{kSampled}, {kStored}}),
-      counts_(device, sizeof(DepthCounts), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+      one_(irradiancePass(device, 1)),
+      six_(irradiancePass(device, kShadowMaps)),
+      counts_(device, sizeof(DepthCounts), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+      constants_(device, sizeof(Constants),
+                 VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
 
 void DrawPasses::recordDepths(VkCommandBuffer commands, const FrontTarget& front, const BackFaces& back,
                               const GpuImage& frontDepth, const GpuImage& backDepth,
@@ -191,12 +144,12 @@ DepthCounts DrawPasses::counts() const {
   return counts;
 }
 
-void DrawPasses::recordReflection(VkCommandBuffer commands, const GpuImage& irradianceImage,
+void DrawPasses::recordReflection(VkCommandBuffer commands, const GpuImage& irradiance,
                                   const GpuImage& share) const {
   DescriptorWrites writes;
-  writes.image(0, kStored, VK_NULL_HANDLE, irradianceImage.use());
+  writes.image(0, kStored, VK_NULL_HANDLE, irradiance.use());
   writes.image(1, kSampled, reflection_.sampler(), share.use());
-  reflection_.record(commands, writes.all(), irradianceImage.width(), irradianceImage.height());
+  reflection_.record(commands, writes.all(), irradiance.width(), irradiance.height());
 }
 
 void DrawPasses::recordHalves(VkCommandBuffer commands, const GpuImage& from, const GpuImage& to) const {
@@ -204,6 +157,34 @@ void DrawPasses::recordHalves(VkCommandBuffer commands, const GpuImage& from, co
   writes.image(0, kSampled, halves_.sampler(), from.use());
   writes.image(1, kStored, VK_NULL_HANDLE, to.use());
   halves_.record(commands, writes.all(), to.width(), to.height());
+}
+
+void DrawPasses::recordIrradiance(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
+                                  const std::vector<ShadowImage>& shadows, int filter) const {
+  const Constants constants = constantsOf(surfaces, light, shadows, filter);
+  // The light before is done with the buffer: PixelPass ends with a barrier.
+  vkCmdUpdateBuffer(commands, constants_.handle(), 0, sizeof constants, &constants);
+  barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
+          {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT});
+
+  const PixelPass& pass = shadows.size() <= 1 ? one_ : six_;
+  // A descriptor that is not read must be valid all the same.
+  VkDescriptorImageInfo maps[kShadowMaps];
+  for (std::size_t i = 0; i < kShadowMaps; ++i) {
+    const PellucidImage map = i >= shadows.size() ? surfaces.normalPlanar.use()
+                              : filter > 0        ? shadows[i].depths
+                                                  : shadows[i].planar;
+    maps[i] = {pass.sampler(), map.view, map.layout};
+  }
+  DescriptorWrites single;
+  single.buffer(0, kUniform, {constants_.handle(), 0, VK_WHOLE_SIZE});
+  single.image(1, kSampled, pass.sampler(), surfaces.normalPlanar.use());
+  single.image(3, kStored, VK_NULL_HANDLE, surfaces.irradiance.use());
+  single.image(4, kSampled, pass.sampler(), surfaces.depthNormal.use());
+  std::vector<VkWriteDescriptorSet> writes = single.all();
+  writes.push_back(
+      {VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, nullptr, VK_NULL_HANDLE, 2, 0, kShadowMaps, kSampled, maps});
+  pass.record(commands, writes, surfaces.irradiance.width(), surfaces.irradiance.height());
 }
 
 }  // namespace pellucid::harness

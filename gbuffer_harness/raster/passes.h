@@ -38,12 +38,13 @@ struct FrontTarget {
   std::shared_ptr<const RenderTarget> target;
 
   FrontTarget(TargetPool& pool, const RasterOptions& options)
-      : target(pool.take(options.width, options.height,
-                         {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)},
-                          {VK_FORMAT_R32G32B32A32_SFLOAT, {.float32 = {0, 0, 0, -1}}},  // no object
-                          {VK_FORMAT_R8_UINT, {}},
-                          {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
-                         farDepth(options.reversedZ))) {}
+      : target(pool.take({options.width,
+                          options.height,
+                          {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)},
+                           {VK_FORMAT_R32G32B32A32_SFLOAT, {.float32 = {0, 0, 0, -1}}},  // no object
+                           {VK_FORMAT_R8_UINT, {}},
+                           {VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(farDepth(options.reversedZ))}},
+                          farDepth(options.reversedZ)})) {}
   const GpuImage& normalPlanar() const { return target->image(kNormalPlanar); }
   const GpuImage& albedoObject() const { return target->image(kAlbedoObject); }
   const GpuImage& material() const { return target->image(kMaterial); }
@@ -63,14 +64,7 @@ struct ShadowImage {
   int size = 0;            // texels across
   Matrix clipFromView, viewFromWorld;
   bool perspective = false;
-  PellucidImage depths{};  // reversed device depths of an engine, read where Shadows::filter > 0
-};
-
-// The maps of a light: none, one, the six of a cube, which have the same projection, or cascades, of which
-// the first that contains a point shadows it. All have one size.
-struct Shadows {
-  std::vector<ShadowImage> images;
-  int filter = 0;  // ShadowDrawing::filter
+  PellucidImage depths{};  // reversed device depths of an engine, read with a filter
 };
 
 // Surfaces that lights shine on.
@@ -80,20 +74,6 @@ struct LitSurfaces {
   const GpuImage& depthNormal;  // in yzw the normal of the triangles, by which shadows are offset
   const GpuImage& irradiance;   // R32G32B32A32_SFLOAT, of the same size
   DrawView view;
-};
-
-class IrradiancePass {
-public:
-  explicit IrradiancePass(Device& device);
-
-  // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
-  // shadow maps' texels that see the surface. Outside the map, or without one, nothing shadows.
-  void record(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
-              const Shadows& shadows) const;
-
-private:
-  PixelPass one_, six_;   // shadow maps at most: a CPU computes every branch of a choice among six
-  HostBuffer constants_;  // written by the commands, so that those of the next light may follow
 };
 
 // Pixels, counted by shaders/depths.comp.
@@ -119,6 +99,13 @@ public:
                     const RasterOptions& options) const;
   DepthCounts counts() const;
 
+  // Adds color * intensity * max(N.L, 0) and the attenuation of KHR_lights_punctual, times the part of the
+  // shadow maps' texels that see the surface. Outside the map, or without one, nothing shadows. shadows:
+  // none, one, the six of a cube, which have the same projection, or cascades, of which the first that
+  // contains a point shadows it. All have one size. filter: ShadowDrawing::filter.
+  void recordIrradiance(VkCommandBuffer commands, const LitSurfaces& surfaces, const Light& light,
+                        const std::vector<ShadowImage>& shadows, int filter) const;
+
   // irradiance *= share, which FragmentShader::Reflected drew.
   void recordReflection(VkCommandBuffer commands, const GpuImage& irradiance, const GpuImage& share) const;
 
@@ -132,11 +119,12 @@ public:
 
   TargetPool targets;
   ImagePool images;
-  const IrradiancePass irradiance;
 
 private:
   PixelPass depths_, reflection_, halves_;
+  PixelPass one_, six_;  // shadow maps at most: a CPU computes every branch of a choice among six
   HostBuffer counts_;
+  HostBuffer constants_;  // of a light, written by the commands, so that those of the next light may follow
 };
 
 }  // namespace pellucid::harness

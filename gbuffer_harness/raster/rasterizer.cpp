@@ -15,31 +15,17 @@
 
 namespace pellucid::harness {
 
-DrawnFrame::DrawnFrame(Device& device, std::shared_ptr<DrawPasses> passes, const RasterOptions& options,
-                       Capture outline, Images images, const DepthCounts& counts,
-                       std::vector<DispatchTime> times)
-    : device_(device),
-      passes_(std::move(passes)),
-      options_(options),
-      outline_(std::move(outline)),
-      images_(std::move(images)),
-      counts_(counts),
-      times_(std::move(times)) {
-  for (std::size_t i = 0; i < images_.maps.size(); ++i)
-    for (const DrawnMap& map : images_.maps[i]) outline_.lights[i].shadowMaps.push_back(map.outline);
-  placeShadowMaps(options.shadow.placement, options.shadowSize, outline_.lights);
-}
-
 std::vector<std::string> DrawnFrame::warnings() const {
   std::vector<std::string> warnings;
-  if (counts_.material == 0) warnings.push_back("no pixel has a material: nothing is translucent");
-  if (counts_.open > 0)
-    warnings.push_back(std::to_string(counts_.open) + " of " + std::to_string(counts_.material) +
-                       " material pixels have no back depth: the mesh is open or single-sided, its faces are turned inward, or its "
+  if (counts.material == 0) warnings.push_back("no pixel has a material: nothing is translucent");
+  if (counts.open > 0)
+    warnings.push_back(std::to_string(counts.open) + " of " + std::to_string(counts.material) +
+                       " material pixels have no back depth: the mesh is open or single-sided, its faces are "
+                       "turned inward, or its "
                        "back lies beyond the camera's far plane" +
                        (hasBackDepth() ? "" : ", and the capture no backDepth"));
-  for (std::size_t i = 0; i < outline_.lights.size() && options_.shadowSize > 0; ++i)
-    if (outline_.lights[i].shadowMaps.empty())
+  for (std::size_t i = 0; i < outline.lights.size() && options.shadowSize > 0; ++i)
+    if (outline.lights[i].shadowMaps.empty())
       warnings.push_back("lights[" + std::to_string(i) +
                          "] stands within or too close to the model for one shadow map: it has none "
                          "and nothing shadows it");
@@ -47,65 +33,47 @@ std::vector<std::string> DrawnFrame::warnings() const {
 }
 
 std::shared_ptr<GpuImage> DrawnFrame::irradianceIn(VkFormat format) const {
-  if (format == VK_FORMAT_R32G32B32A32_SFLOAT) return images_.irradiance;
-  const std::shared_ptr<GpuImage> image = passes_->images.take(options_.width, options_.height, format);
+  if (format == VK_FORMAT_R32G32B32A32_SFLOAT) return irradianceImage;
+  const std::shared_ptr<GpuImage> image = passes->images.take(options.width, options.height, format);
   if (format == VK_FORMAT_R16G16B16A16_SFLOAT)
-    device_.run(
-        [&](VkCommandBuffer commands) { passes_->recordHalves(commands, *images_.irradiance, *image); });
+    device.run([&](VkCommandBuffer commands) { passes->recordHalves(commands, *irradianceImage, *image); });
   else
-    image->upload(rgb(images_.irradiance->download()));
+    image->upload(rgb(irradianceImage->download()));
   return image;
 }
 
-VkRect2D DrawnFrame::whole() const {
-  return {{0, 0}, {static_cast<std::uint32_t>(options_.width), static_cast<std::uint32_t>(options_.height)}};
-}
-
 Capture DrawnFrame::surfaces(const VkRect2D& rect) const {
-  Capture capture = outline_;
+  Capture capture = outline;
   capture.width = static_cast<int>(rect.extent.width);
   capture.height = static_cast<int>(rect.extent.height);
-  capture.frontDepth.image = images_.frontDepth->download(rect);
-  if (hasBackDepth()) capture.backDepth.image = images_.backDepth->download(rect);
-  capture.irradiance = rgb(images_.irradiance->download(rect));
-  capture.albedo = rgb(images_.front.albedoObject().download(rect));
-  const Image material = images_.front.material().download(rect);
+  capture.frontDepth.image = frontDepth->download(rect);
+  if (hasBackDepth()) capture.backDepth.image = backDepth->download(rect);
+  capture.irradiance = rgb(irradianceImage->download(rect));
+  capture.albedo = rgb(front.albedoObject().download(rect));
+  const Image material = front.material().download(rect);
   capture.material.assign(material.data.begin(), material.data.end());
   return capture;
 }
 
 std::vector<Light> DrawnFrame::lights() const {
-  std::vector<Light> lights = outline_.lights;
-  for (std::size_t i = 0; i < images_.maps.size(); ++i)
-    for (std::size_t k = 0; k < images_.maps[i].size(); ++k) {
-      ShadowMap map = downloadMap(images_.maps[i][k], options_);
-      const ShadowMap& place = outline_.lights[i].shadowMaps[k];
-      map.sharedImage = place.sharedImage;
-      map.offset = place.offset;
-      map.layer = place.layer;
-      lights[i].shadowMaps[k] = std::move(map);
-    }
+  std::vector<Light> lights = outline.lights;
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    for (std::size_t k = 0; k < maps[i].size(); ++k)
+      lights[i].shadowMaps[k] = downloadMap(maps[i][k], options);
+  placeShadowMaps(options.shadow.placement, options.shadowSize, lights);
   return lights;
 }
 
 std::vector<std::uint8_t> DrawnFrame::material() const {
-  const Image material = images_.front.material().download();
+  const Image material = front.material().download();
   return {material.data.begin(), material.data.end()};
 }
 
 Capture DrawnFrame::capture() const {
-  Capture capture = surfaces(whole());
+  Capture capture = surfaces(
+      {{0, 0}, {static_cast<std::uint32_t>(options.width), static_cast<std::uint32_t>(options.height)}});
   capture.lights = lights();
   return capture;
-}
-
-RasterResult DrawnFrame::result() const {
-  RasterResult result;
-  result.capture = capture();
-  result.openPixels = counts_.open;
-  if (images_.share) result.reflectedShare = rgb(images_.share->image(0).download());
-  result.warnings = warnings();
-  return result;
 }
 
 namespace {
@@ -155,9 +123,8 @@ BackFaces recordBack(VkCommandBuffer commands, TargetPool& targets, const Upload
   const bool keepGreater = options.reversedZ != (options.backFace == BackFace::Farthest);
   // Half floats count to 2048 and every device can blend them.
   const BackFaces back{
-      targets.take(options.width, options.height, depthColors(options.reversedZ), farDepth(keepGreater)),
-      targets.take(options.width, options.height, {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}},
-                   std::nullopt)};
+      targets.take({options.width, options.height, depthColors(options.reversedZ), farDepth(keepGreater)}),
+      targets.take({options.width, options.height, {{VK_FORMAT_R16G16B16A16_SFLOAT, clearTo(0)}}})};
   model.record(commands, *back.depths, view,
                {FragmentShader::Depth, VK_CULL_MODE_FRONT_BIT, nearer(keepGreater), false},
                VK_CULL_MODE_FRONT_BIT, {&front.depthNormal(), &front.albedoObject()});
@@ -175,7 +142,7 @@ bool hasLobesApart(const Model& model) {
 class Steps {
 public:
   void add(std::string name, std::function<void(VkCommandBuffer)> record) {
-    steps_.push_back({std::move(name), std::move(record)});
+    steps_.emplace_back(std::move(name), std::move(record));
   }
 
   std::vector<DispatchTime> run(Device& device) const {
@@ -184,22 +151,18 @@ public:
       timestamps.reset(commands);
       timestamps.mark(commands, 0);
       for (std::size_t i = 0; i < steps_.size(); ++i) {
-        steps_[i].record(commands);
+        steps_[i].second(commands);
         timestamps.mark(commands, static_cast<std::uint32_t>(i) + 1);
       }
     });
     const std::vector<double> intervals = timestamps.intervals();
     std::vector<DispatchTime> times;
-    for (std::size_t i = 0; i < steps_.size(); ++i) times.push_back({steps_[i].name, intervals[i]});
+    for (std::size_t i = 0; i < steps_.size(); ++i) times.push_back({steps_[i].first, intervals[i]});
     return times;
   }
 
 private:
-  struct Step {
-    std::string name;
-    std::function<void(VkCommandBuffer)> record;
-  };
-  std::vector<Step> steps_;
+  std::vector<std::pair<std::string, std::function<void(VkCommandBuffer)>>> steps_;
 };
 
 }  // namespace
@@ -249,24 +212,22 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
   const auto image = [&](VkFormat format) {
     return passes_->images.take(options.width, options.height, format);
   };
-  DrawnFrame::Images images{FrontTarget(passes_->targets, options),
-                            image(VK_FORMAT_R32_SFLOAT),
-                            image(VK_FORMAT_R32_SFLOAT),
-                            image(VK_FORMAT_R32G32B32A32_SFLOAT),
-                            nullptr,
-                            std::vector<std::vector<DrawnMap>>(model_.lights.size())};
+  const auto frame = std::make_shared<DrawnFrame>(DrawnFrame{
+      device_, passes_, options, std::move(outline), FrontTarget(passes_->targets, options),
+      image(VK_FORMAT_R32_SFLOAT), image(VK_FORMAT_R32_SFLOAT), image(VK_FORMAT_R32G32B32A32_SFLOAT)});
+  DrawnFrame& f = *frame;
+  f.maps.resize(model_.lights.size());
   Steps steps;
   steps.add("surfaces", [&](VkCommandBuffer commands) {
-    images.irradiance->recordClear(commands);
+    f.irradianceImage->recordClear(commands);
     barrier(commands, {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT}, kComputing);
-    images.front.record(commands, uploaded_, view);
+    f.front.record(commands, uploaded_, view);
   });
   steps.add("back faces", [&](VkCommandBuffer commands) {
-    const BackFaces back = recordBack(commands, passes_->targets, transmission, view, images.front, options);
-    passes_->recordDepths(commands, images.front, back, *images.frontDepth, *images.backDepth, options);
+    const BackFaces back = recordBack(commands, passes_->targets, transmission, view, f.front, options);
+    passes_->recordDepths(commands, f.front, back, *f.frontDepth, *f.backDepth, options);
   });
-  const LitSurfaces surfaces{images.front.normalPlanar(), images.front.depthNormal(), *images.irradiance,
-                             view};
+  const LitSurfaces surfaces{f.front.normalPlanar(), f.front.depthNormal(), *f.irradianceImage, view};
   // Maps of all triangles shadow the irradiance where the capture's have fewer.
   std::vector<std::vector<DrawnMap>> shadows(model_.lights.size());
   for (std::size_t i = 0; i < model_.lights.size(); ++i) {
@@ -279,31 +240,39 @@ std::shared_ptr<const DrawnFrame> Rasterizer::draw(const ModelCamera& camera, co
     if (options.shadowSize > 0)
       steps.add("shadow maps", [&, draw, i](VkCommandBuffer commands) {
         shadows[i] = draw(commands, uploaded_);
-        images.maps[i] = &transmission == &uploaded_ ? shadows[i] : draw(commands, transmission);
+        f.maps[i] = &transmission == &uploaded_ ? shadows[i] : draw(commands, transmission);
       });
     if (light.radius == 0)
       steps.add("irradiance", [&, i](VkCommandBuffer commands) {
-        passes_->irradiance.record(commands, surfaces, model_.lights[i], shadowsOf(shadows[i], options));
+        std::vector<ShadowImage> images;
+        for (const DrawnMap& map : shadows[i]) images.push_back(map.image);
+        passes_->recordIrradiance(commands, surfaces, model_.lights[i], images, options.shadow.filter);
       });
   }
   if (hasLobesApart(model_))
     steps.add("reflected share", [&](VkCommandBuffer commands) {
-      images.share =
-          passes_->targets.take(options.width, options.height, {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}},
-                                farDepth(options.reversedZ));
-      uploaded_.record(commands, *images.share, view,
+      f.share = passes_->targets.take({options.width,
+                                       options.height,
+                                       {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}},
+                                       farDepth(options.reversedZ)});
+      uploaded_.record(commands, *f.share, view,
                        {FragmentShader::Reflected, VK_CULL_MODE_BACK_BIT, nearer(options.reversedZ), false},
                        VK_CULL_MODE_NONE);
-      passes_->recordReflection(commands, *images.irradiance, images.share->image(0));
+      passes_->recordReflection(commands, *f.irradianceImage, f.share->image(0));
     });
-  std::vector<DispatchTime> times = steps.run(device_);
-  return std::make_shared<DrawnFrame>(device_, passes_, options, std::move(outline), std::move(images),
-                                      passes_->counts(), std::move(times));
+  f.times = steps.run(device_);
+  f.counts = passes_->counts();
+  for (std::size_t i = 0; i < f.maps.size(); ++i)
+    for (const DrawnMap& map : f.maps[i]) f.outline.lights[i].shadowMaps.push_back(map.outline);
+  placeShadowMaps(options.shadow.placement, options.shadowSize, f.outline.lights);
+  return frame;
 }
 
 RasterResult rasterize(Device& device, const Model& model, const ModelCamera& camera,
                        const RasterOptions& options) {
-  return Rasterizer(device, model).draw(camera, options)->result();
+  const std::shared_ptr<const DrawnFrame> frame = Rasterizer(device, model).draw(camera, options);
+  return {frame->capture(), frame->counts.open,
+          frame->share ? rgb(frame->share->image(0).download()) : Image(), frame->warnings()};
 }
 
 }  // namespace pellucid::harness

@@ -14,30 +14,22 @@
 namespace pellucid::harness {
 
 // A model as the rasterizer drew it.
-class DrawnFrame {
-public:
-  struct Images {
-    FrontTarget front;
-    std::shared_ptr<GpuImage> frontDepth, backDepth;  // as the options store them
-    std::shared_ptr<GpuImage> irradiance;             // R32G32B32A32_SFLOAT
-    std::shared_ptr<const RenderTarget> share;  // the reflected one; null: no surface has its lobes apart
-    std::vector<std::vector<DrawnMap>> maps;    // of each light
-  };
-
-  // outline: the capture but for its images, whose lights have no maps yet.
-  DrawnFrame(Device& device, std::shared_ptr<DrawPasses> passes, const RasterOptions& options,
-             Capture outline, Images images, const DepthCounts& counts, std::vector<DispatchTime> times);
-
+struct DrawnFrame {
+  Device& device;
+  std::shared_ptr<DrawPasses> passes;
+  RasterOptions options;
   // Without images: size, matrices, encodings, lights with the places of their maps, materials.
-  const Capture& outline() const { return outline_; }
-  const DepthCounts& counts() const { return counts_; }
-  const std::vector<DispatchTime>& times() const { return times_; }  // of drawing, by the GPU's clock
-  std::vector<std::string> warnings() const;                         // sentences for a person
+  Capture outline;
+  FrontTarget front;
+  std::shared_ptr<GpuImage> frontDepth, backDepth;  // as the options store them
+  std::shared_ptr<GpuImage> irradianceImage;        // R32G32B32A32_SFLOAT
+  std::shared_ptr<const RenderTarget> share;        // the reflected one; null: no surface has its lobes apart
+  std::vector<std::vector<DrawnMap>> maps;          // of each light
+  DepthCounts counts;
+  std::vector<DispatchTime> times;  // of drawing, by the GPU's clock
 
-  Device& device() const { return device_; }
-  const RasterOptions& options() const { return options_; }
-  const Images& images() const { return images_; }
-  bool hasBackDepth() const { return counts_.open == 0 || counts_.back > 0; }
+  std::vector<std::string> warnings() const;  // sentences for a person
+  bool hasBackDepth() const { return counts.open == 0 || counts.back > 0; }
   std::shared_ptr<GpuImage> irradianceIn(VkFormat format) const;
 
   // The device's images, downloaded anew by each call.
@@ -45,18 +37,6 @@ public:
   Capture surfaces(const VkRect2D& rect) const;  // a part of the images of the surfaces, in its size
   std::vector<Light> lights() const;             // with their maps' images
   std::vector<std::uint8_t> material() const;
-  RasterResult result() const;
-
-private:
-  VkRect2D whole() const;
-
-  Device& device_;
-  std::shared_ptr<DrawPasses> passes_;
-  RasterOptions options_;
-  Capture outline_;
-  Images images_;
-  DepthCounts counts_;
-  std::vector<DispatchTime> times_;
 };
 
 class Rasterizer {

@@ -202,21 +202,20 @@ void createPipeline(const Device& device, const DrawPass& pass, const PushLayout
         "vkCreateGraphicsPipelines");
 }
 
-RenderTarget::RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
-                           std::optional<float> clearDepth, VkFormat depthFormat)
-    : extent_{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)},
-      depthFormat_(depthFormat) {
+RenderTarget::RenderTarget(Device& device, const Shape& shape)
+    : extent_{static_cast<std::uint32_t>(shape.width), static_cast<std::uint32_t>(shape.height)} {
   std::vector<Attachment> attachments;
-  for (const Color& color : colors) {
-    images_.push_back(
-        std::make_unique<GpuImage>(device, width, height, color.format, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT));
+  for (const Color& color : shape.colors) {
+    images_.push_back(std::make_unique<GpuImage>(device, shape.width, shape.height, color.format,
+                                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT));
     attachments.push_back(
         {images_.back()->use().view, color.format, {.color = color.clear}, VK_IMAGE_LAYOUT_GENERAL});
   }
   std::optional<Attachment> depth;
-  if (clearDepth) {
-    depth_.emplace(device, extent_, depthFormat);
-    depth = {depth_->view(), depthFormat, {.depthStencil = {*clearDepth, 0}}, VK_IMAGE_LAYOUT_GENERAL};
+  if (shape.clearDepth) {
+    depth_.emplace(device, extent_, shape.depthFormat);
+    depth = {
+        depth_->view(), shape.depthFormat, {.depthStencil = {*shape.clearDepth, 0}}, VK_IMAGE_LAYOUT_GENERAL};
   }
   pass_.emplace(device, extent_, attachments, depth);
 }

@@ -108,14 +108,18 @@ public:
              std::equal(std::begin(clear.uint32), std::end(clear.uint32), std::begin(other.clear.uint32));
     }
   };
-  // depthFormat: of that buffer. Throws what DepthBuffer throws.
-  RenderTarget(Device& device, int width, int height, const std::vector<Color>& colors,
-               std::optional<float> clearDepth, VkFormat depthFormat = VK_FORMAT_D32_SFLOAT);
+  struct Shape {
+    int width, height;
+    std::vector<Color> colors;
+    std::optional<float> clearDepth = {};
+    VkFormat depthFormat = VK_FORMAT_D32_SFLOAT;  // of that buffer
+    bool operator==(const Shape&) const = default;
+  };
+  // Throws what DepthBuffer throws.
+  RenderTarget(Device& device, const Shape& shape);
 
   GpuImage& image(std::size_t i) const { return *images_[i]; }
   const DrawPass& pass() const { return *pass_; }
-  VkRenderPass renderPass() const { return pass_->renderPass(); }
-  VkFormat depthFormat() const { return depthFormat_; }
   // The depth buffer as it was stored, one channel, 0..1.
   Image depth() const { return depth_->download(); }
   PellucidImage depthUse() const { return {depth_->view(), VK_IMAGE_LAYOUT_GENERAL}; }
@@ -126,38 +130,22 @@ public:
 
 private:
   VkExtent2D extent_;
-  VkFormat depthFormat_;
   std::vector<std::unique_ptr<GpuImage>> images_;
   std::optional<DepthBuffer> depth_;
   std::optional<DrawPass> pass_;
 };
 
 // Targets that frames use in turns.
-class TargetPool {
+class TargetPool : public Pool<RenderTarget::Shape, const RenderTarget> {
 public:
   explicit TargetPool(Device& device) : device_(device) {}
 
-  // Arguments and errors are those of RenderTarget.
-  std::shared_ptr<const RenderTarget> take(int width, int height,
-                                           const std::vector<RenderTarget::Color>& colors,
-                                           std::optional<float> clearDepth,
-                                           VkFormat depthFormat = VK_FORMAT_D32_SFLOAT) {
-    return pool_.take({width, height, colors, clearDepth, depthFormat}, [&] {
-      return std::make_shared<const RenderTarget>(device_, width, height, colors, clearDepth, depthFormat);
-    });
+  std::shared_ptr<const RenderTarget> take(const RenderTarget::Shape& shape) {
+    return Pool::take(shape, [&] { return std::make_shared<const RenderTarget>(device_, shape); });
   }
-  void nextFrame() { pool_.nextFrame(); }
 
 private:
-  struct Key {
-    int width, height;
-    std::vector<RenderTarget::Color> colors;
-    std::optional<float> clearDepth;
-    VkFormat depthFormat;
-    bool operator==(const Key&) const = default;
-  };
   Device& device_;
-  Pool<Key, const RenderTarget> pool_;
 };
 
 }  // namespace pellucid::harness

@@ -44,7 +44,7 @@ Target recordSurface(VkCommandBuffer commands, TargetPool& targets, const Upload
     colors.push_back({VK_FORMAT_R32_SFLOAT, clearTo(0)});
     colors.push_back({VK_FORMAT_R8_UNORM, clearTo(0)});
   }
-  Target target = targets.take(size, size, colors, farDepth(view.reversedDepth));
+  Target target = targets.take({size, size, colors, farDepth(view.reversedDepth)});
   model.record(commands, *target, view,
                {casters ? FragmentShader::Caster : FragmentShader::Depth, VK_CULL_MODE_NONE,
                 nearer(view.reversedDepth), false},
@@ -56,7 +56,7 @@ Target recordSurface(VkCommandBuffer commands, TargetPool& targets, const Upload
 // before it.
 Target recordExit(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
                   const DrawView& view, const RenderTarget& surface, int size) {
-  Target target = targets.take(size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth));
+  Target target = targets.take({size, size, depthColors(view.reversedDepth), farDepth(view.reversedDepth)});
   EarlierPass earlier{&surface.image(kDeviceDepth)};
   earlier.caster = &surface.image(kCasterObject);
   model.record(commands, *target, view,
@@ -88,8 +88,8 @@ double depthUnit(const ShadowDrawing& drawing) { return drawing.bits == 16 ? 1.0
 Target recordAsEngine(VkCommandBuffer commands, TargetPool& targets, const UploadedModel& model,
                       const DrawView& view, const RasterOptions& options) {
   const ShadowDrawing& drawing = options.shadow;
-  Target target = targets.take(options.shadowSize, options.shadowSize, depthColors(kReversed),
-                               farDepth(kReversed), formatOf(drawing));
+  Target target = targets.take({options.shadowSize, options.shadowSize, depthColors(kReversed),
+                                farDepth(kReversed), formatOf(drawing)});
   PipelineState state{FragmentShader::Depth, VK_CULL_MODE_NONE, nearer(kReversed), false};
   state.cull = drawing.cull == MapCull::Front  ? VK_CULL_MODE_FRONT_BIT
                : drawing.cull == MapCull::Back ? VK_CULL_MODE_BACK_BIT
@@ -152,13 +152,6 @@ std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& target
     if (casters) map.exit = recordExit(commands, targets, uploaded, view, *map.surface, size);
   }
   return maps;
-}
-
-Shadows shadowsOf(const std::vector<DrawnMap>& maps, const RasterOptions& options) {
-  Shadows shadows;
-  for (const DrawnMap& map : maps) shadows.images.push_back(map.image);
-  shadows.filter = options.shadow.filter;
-  return shadows;
 }
 
 ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options) {

@@ -29,9 +29,6 @@ std::vector<DrawnMap> recordShadows(VkCommandBuffer commands, TargetPool& target
                                     const std::vector<LightView>& views, const UploadedModel& uploaded,
                                     const Light& light, const RasterOptions& options);
 
-// For the irradiance.
-Shadows shadowsOf(const std::vector<DrawnMap>& maps, const RasterOptions& options);
-
 // The map with its images.
 ShadowMap downloadMap(const DrawnMap& map, const RasterOptions& options);
 

@@ -1,18 +1,16 @@
 #include "reference/camera.h"
 
 #include <cmath>
-#include <glm/gtc/type_ptr.hpp>
 
 #include "common/error.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness::reference {
-
-glm::dmat4 toMatrix(const Matrix& columns) { return glm::make_mat4(columns.data()); }
 
 bool holdsSurface(float distance) { return distance > 0 && distance < 1e9f; }
 
 Camera::Camera(const Matrix& clipFromView, int width, int height)
-    : clipFromView_(toMatrix(clipFromView)), width_(width), height_(height) {
+    : clipFromView_(toGlm(clipFromView)), width_(width), height_(height) {
   const glm::dmat4& m = clipFromView_;
   const std::string field = "camera.clipFromView";
   if (m[0][2] != 0 || m[1][2] != 0 || m[0][3] != 0 || m[1][3] != 0)

@@ -8,7 +8,10 @@
 
 namespace pellucid::harness::reference {
 
-glm::dmat4 toMatrix(const Matrix& columns);
+// Row by row.
+inline std::size_t pixelNumber(const Image& image, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+}
 
 // True when a viewZ or distance value holds a surface: positive, finite and below 1e9.
 bool holdsSurface(float distance);

@@ -1,12 +1,14 @@
 #include "reference/camera_motion.h"
 
+#include "scene/vector.h"
+
 namespace pellucid::harness::reference {
 
 CameraMotion::CameraMotion(const Capture& later, const Matrix& clipFromView, const Matrix& viewFromWorld)
     : later_(later),
       earlierCamera_(clipFromView, later.width, later.height),
       laterCamera_(later.clipFromView, later.width, later.height),
-      earlierFromLater_(toMatrix(viewFromWorld) * glm::inverse(toMatrix(later.viewFromWorld))) {}
+      earlierFromLater_(toGlm(viewFromWorld) * glm::inverse(toGlm(later.viewFromWorld))) {}
 
 std::optional<glm::dvec3> CameraMotion::earlierPlace(int x, int y) const {
   const std::optional<double> depth =

@@ -75,8 +75,7 @@ void Diffusion::collect(Layer& layer, std::size_t material) const {
   for (int y = 0; y < capture_.height; ++y) {
     for (int x = 0; x < capture_.width; ++x) {
       layer.firstAt.push_back(static_cast<std::uint32_t>(layer.samples.size()));
-      const std::size_t pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
-                                static_cast<std::size_t>(x);
+      const std::size_t pixel = pixelNumber(capture_.irradiance, x, y);
       if (capture_.material[pixel] != material + 1) continue;
       const std::optional<Surface> surface = surfaces_.at(x, y);
       if (!surface) continue;
@@ -153,14 +152,13 @@ void Diffusion::addRow(const Layer& layer, const Sample& receiver, int x, int y,
 }
 
 glm::dvec3 Diffusion::at(int x, int y) const {
-  const std::size_t width = static_cast<std::size_t>(capture_.width);
-  const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+  const std::size_t pixel = pixelNumber(capture_.irradiance, x, y);
   glm::dvec3 result = irradiance_[pixel];
   const std::uint8_t material = capture_.material[pixel];
   if (material == 0 || material > layers_.size()) return result;
   const Layer& layer = layers_[material - 1u];
   if (!layer.profile) return result;
-  const std::size_t cell = static_cast<std::size_t>(y) * (width + 1) + static_cast<std::size_t>(x);
+  const std::size_t cell = pixel + static_cast<std::size_t>(y);
   if (layer.firstAt[cell] == layer.firstAt[cell + 1]) return result;  // no surface
 
   const Sample& receiver = layer.samples[layer.firstAt[cell]];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <glm/gtc/matrix_access.hpp>
 #include <iterator>
 #include <numbers>
 #include <optional>
@@ -15,127 +14,6 @@
 
 namespace pellucid::harness::reference {
 namespace {
-
-// Texels of a light's shadow map in double precision. World space, scene units.
-class ShadowTexels {
-public:
-  // Keeps references. Throws InputError when a matrix that the encoding needs is missing or singular.
-  ShadowTexels(const Light& light, const ShadowMap& map);
-
-  // The surface that a texel stores; absent where it holds nothing.
-  std::optional<glm::dvec3> at(int x, int y) const;
-  // The point of the texel's ray that has a depth in the map's encoding.
-  std::optional<glm::dvec3> at(int x, int y, float stored) const;
-  // True where it lies on the near plane, where light enters elsewhere.
-  bool clamped(int x, int y) const;
-  // Scene units along the light's ray that the texel's surface may be off by.
-  double uncertain(int x, int y) const;
-
-  // Area across the light's ray that a texel covers at a point, square scene units.
-  double across(int x, int y, const glm::dvec3& point) const;
-
-private:
-  struct Line {
-    glm::dvec3 origin, direction;  // direction of travel, unit
-    glm::dvec3 at(double t) const { return origin + t * direction; }
-  };
-  bool holds(float stored) const;
-  glm::dvec3 pointAt(int x, int y, double stored) const;
-  DrawnDepth drawn(int x, int y) const;
-  // The light's ray through continuous map coordinates.
-  Line rayAt(double x, double y) const;
-
-  const Light& light_;
-  const ShadowMap& map_;
-  glm::dmat4 clipFromWorld_, worldFromClip_{1}, viewFromWorld_{1};
-  bool perspective_;
-  float nothing_;
-};
-
-glm::dvec3 toVector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-
-ShadowTexels::ShadowTexels(const Light& light, const ShadowMap& map)
-    : light_(light), map_(map), clipFromWorld_(toMatrix(map.clipFromWorld)) {
-  const double determinant = glm::determinant(clipFromWorld_);
-  if (!(std::abs(determinant) > 0)) throw InputError("", "shadowMap.clipFromWorld", "the matrix is singular");
-  worldFromClip_ = glm::inverse(clipFromWorld_);
-  perspective_ = light.type != PELLUCID_LIGHT_DIRECTIONAL;
-  if (map.viewFromWorld) viewFromWorld_ = toMatrix(*map.viewFromWorld);
-  const bool planar = map.depth.encoding == PELLUCID_DEPTH_VIEW_Z ||
-                      (map.depth.encoding == PELLUCID_DEPTH_DISTANCE && !perspective_);
-  if (planar && !map.viewFromWorld)
-    throw InputError("", "shadowMap.viewFromWorld", "missing, and the depth encoding needs it");
-  // Depth grows away from the light, or is reversed.
-  const Line ray = rayAt(0.5 * map.depth.image.width, 0.5 * map.depth.image.height);
-  const glm::dvec4 far = clipFromWorld_ * glm::dvec4(ray.at(1), 1),
-                   near = clipFromWorld_ * glm::dvec4(ray.origin, 1);
-  nothing_ = far.z * near.w > near.z * far.w ? 1.0f : 0.0f;
-}
-
-ShadowTexels::Line ShadowTexels::rayAt(double x, double y) const {
-  const glm::dvec2 ndc(x / map_.depth.image.width * 2 - 1, y / map_.depth.image.height * 2 - 1);
-  // Neither end of the depth range: an infinite one has no point there.
-  const glm::dvec4 a = worldFromClip_ * glm::dvec4(ndc, 0.25, 1),
-                   b = worldFromClip_ * glm::dvec4(ndc, 0.75, 1);
-  const glm::dvec3 p = glm::dvec3(a) / a.w, q = glm::dvec3(b) / b.w;
-  if (!perspective_) return {p, glm::normalize(toVector(light_.direction))};
-  const glm::dvec3 eye = toVector(light_.position);
-  return {eye, glm::normalize(0.5 * (p + q) - eye)};
-}
-
-bool ShadowTexels::holds(float stored) const {
-  if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) return stored >= 0 && stored <= 1 && stored != nothing_;
-  return holdsSurface(stored);
-}
-
-DrawnDepth ShadowTexels::drawn(int x, int y) const {
-  return drawnDepth(map_, x, y, [this](float stored) { return holds(stored); });
-}
-
-bool ShadowTexels::clamped(int x, int y) const {
-  return isClamped(map_, nothing_, *map_.depth.image.at(x, y));
-}
-
-std::optional<glm::dvec3> ShadowTexels::at(int x, int y) const {
-  if (!holds(*map_.depth.image.at(x, y))) return std::nullopt;
-  return pointAt(x, y, drawn(x, y).depth) - map_.offsetLength * rayAt(x + 0.5, y + 0.5).direction;
-}
-
-std::optional<glm::dvec3> ShadowTexels::at(int x, int y, float stored) const {
-  if (!holds(stored)) return std::nullopt;
-  return pointAt(x, y, double(stored));
-}
-
-double ShadowTexels::uncertain(int x, int y) const {
-  const DrawnDepth d = drawn(x, y);
-  return d.uncertain > 0 ? glm::distance(pointAt(x, y, d.depth + d.uncertain), pointAt(x, y, d.depth)) : 0;
-}
-
-glm::dvec3 ShadowTexels::pointAt(int x, int y, double stored) const {
-  const Line ray = rayAt(x + 0.5, y + 0.5);
-  if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) {
-    const Image& image = map_.depth.image;
-    const glm::dvec4 p = worldFromClip_ * glm::dvec4((x + 0.5) / image.width * 2 - 1,
-                                                     (y + 0.5) / image.height * 2 - 1, stored, 1);
-    return glm::dvec3(p) / p.w;
-  }
-  if (map_.depth.encoding == PELLUCID_DEPTH_DISTANCE && perspective_) return ray.at(stored);
-  const glm::dvec4 planar = -glm::row(viewFromWorld_, 2);
-  const double from = glm::dot(planar, glm::dvec4(ray.origin, 1));
-  const double perLength = glm::dot(glm::dvec3(planar), ray.direction);
-  return ray.at((stored - from) / perLength);
-}
-
-double ShadowTexels::across(int x, int y, const glm::dvec3& point) const {
-  const Line center = rayAt(x + 0.5, y + 0.5), right = rayAt(x + 1.5, y + 0.5),
-             below = rayAt(x + 0.5, y + 1.5);
-  if (!perspective_)
-    return std::abs(
-        glm::dot(glm::cross(right.origin - center.origin, below.origin - center.origin), center.direction));
-  const double distance = glm::distance(point, center.origin);
-  const glm::dvec3 solid = glm::cross(right.direction - center.direction, below.direction - center.direction);
-  return std::abs(glm::dot(solid, center.direction)) * distance * distance;
-}
 
 // Kernels leave out this share beyond their radius.
 constexpr double kTail = 1e-4;
@@ -152,11 +30,6 @@ constexpr double kMostTurned = 0.5;
 // Slope towards the camera from which a surface is a limb.
 constexpr double kSteepestSeen = 2;
 
-bool contains(const ShadowMap& map, const glm::dvec3& point) {
-  const glm::dvec4 clip = toMatrix(map.clipFromWorld) * glm::dvec4(point, 1);
-  return clip.w > 0 && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w;
-}
-
 }  // namespace
 
 Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
@@ -170,9 +43,9 @@ Gather::Gather(const Capture& capture, const SurfaceReader& surfaces,
     Blocks& blocks = lights_.emplace_back();
     std::vector<ShadowView>& views = views_.emplace_back();
     if (holdsBackFaces(light)) continue;
-    for (const ShadowMap& map : light.shadowMaps) views.emplace_back(light, map);
-    for (std::size_t map = 0; map < light.shadowMaps.size(); ++map) {
-      Blocks more = collect(light, map);
+    for (const ShadowMap& map : light.shadowMaps) {
+      views.emplace_back(light, map);
+      Blocks more = collect(light, map, views);
       std::move(more.begin(), more.end(), std::back_inserter(blocks));
     }
   }
@@ -189,9 +62,7 @@ std::optional<glm::dvec3> Gather::shownNormal(const glm::dvec3& world, const glm
   if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < capture_.width && pixel.y < capture_.height))
     return std::nullopt;
   const int x = static_cast<int>(pixel.x), y = static_cast<int>(pixel.y);
-  if (capture_.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
-                        static_cast<std::size_t>(x)] == 0)
-    return std::nullopt;
+  if (capture_.material[pixelNumber(capture_.irradiance, x, y)] == 0) return std::nullopt;
   const std::optional<Surface> shown = surfaces_.at(x, y);
   if (!shown) return std::nullopt;
   const glm::dvec3& normal = shown->normal;
@@ -233,16 +104,15 @@ bool Gather::cameraSees(const glm::dvec3& world, const glm::dvec3& normal, doubl
   return front && planar <= *front + tolerance;
 }
 
-Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
-  const ShadowMap& map = light.shadowMaps[mapIndex];
+Gather::Blocks Gather::collect(const Light& light, const ShadowMap& map,
+                               const std::vector<ShadowView>& views) const {
   const int width = map.depth.image.width, height = map.depth.image.height;
-  const ShadowTexels texels(light, map);
+  const ShadowView& texels = views.back();
   std::vector<std::optional<glm::dvec3>> points;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) points.push_back(texels.at(x, y));
+    for (int x = 0; x < width; ++x) points.push_back(texels.surfaceAt(x, y));
   const auto point = [&](int x, int y) -> const std::optional<glm::dvec3>& {
-    return points[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                  static_cast<std::size_t>(x)];
+    return points[pixelNumber(map.depth.image, x, y)];
   };
   // Along one axis, to the nearer of the two neighbors: the other may lie across an edge.
   const auto slope = [&](int x, int y, int dx, int dy) {
@@ -264,9 +134,8 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
         for (int x = left; x < std::min(left + kBlock, width); ++x) {
           const std::optional<glm::dvec3>& p = point(x, y);
           if (!p) continue;
-          if (std::any_of(light.shadowMaps.begin(),
-                          light.shadowMaps.begin() + static_cast<std::ptrdiff_t>(mapIndex),
-                          [&](const ShadowMap& earlier) { return contains(earlier, *p); }))
+          if (std::any_of(views.begin(), views.end() - 1,
+                          [&](const ShadowView& earlier) { return earlier.contains(*p); }))
             continue;
           const Arrival arrival = arrivalAt(light, *p);
           glm::dvec3 normal = arrival.toLight;
@@ -276,14 +145,14 @@ Gather::Blocks Gather::collect(const Light& light, std::size_t mapIndex) const {
             if (glm::length(n) > 0) normal = glm::normalize(glm::dot(n, arrival.toLight) < 0 ? -n : n);
           }
           const double across = texels.across(x, y, *p);
-          const std::size_t texel =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-          const std::uint8_t of = map.casterMaterial.empty() ? 0 : map.casterMaterial[texel];
+          const std::uint8_t of =
+              map.casterMaterial.empty() ? 0 : map.casterMaterial[pixelNumber(map.depth.image, x, y)];
           if (!map.casterMaterial.empty() && of == 0) continue;
-          if (texels.clamped(x, y)) continue;
+          if (texels.isClamped(x, y)) continue;
           double exit = INFINITY;
           if (!map.exitDepth.empty())
-            if (const auto e = texels.at(x, y, *map.exitDepth.at(x, y))) exit = mm_ * glm::distance(*e, *p);
+            if (const auto e = texels.pointAt(x, y, *map.exitDepth.at(x, y)))
+              exit = mm_ * glm::distance(*e, *p);
           const double half = kSeenTolerance * std::sqrt(across), uncertain = texels.uncertain(x, y);
           const auto shown = shownNormal(*p, arrival.toLight, half, uncertain, std::abs(map.offsetLength),
                                          map.depthBiasSlope != 0 || map.offsetLength != 0);

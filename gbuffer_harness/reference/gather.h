@@ -69,8 +69,9 @@ private:
     const std::vector<ShadowView>* views = nullptr;  // of the light's maps
   };
 
-  // The texels of one of the light's maps. A texel that an earlier map contains counts there.
-  Blocks collect(const Light& light, std::size_t map) const;
+  // The texels of one of the light's maps, that of the last view. A texel that an earlier one contains counts
+  // there.
+  Blocks collect(const Light& light, const ShadowMap& map, const std::vector<ShadowView>& views) const;
   Sums sums(const Blocks& blocks, const Exit& exit, const Place& place) const;
   Place placeOf(std::size_t light, const Exit& exit) const;
   // Part of what enters at a texel that reaches the exit through the medium.

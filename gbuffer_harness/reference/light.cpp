@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 #include <numbers>
 #include <vector>
 
@@ -11,52 +12,6 @@
 #include "scene/vector.h"
 
 namespace pellucid::harness::reference {
-
-DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bool(float)>& holds) {
-  const Image& image = map.depth.image;
-  const double stored = double(*image.at(x, y)), bias = map.depthBiasSlope;
-  if (bias == 0) return {stored - map.depthBiasConstant, map.depthStep / 2};
-  const auto neighbors = [&](int dx, int dy) {
-    std::vector<double> depths;
-    for (const int sign : {1, -1}) {
-      const int nx = x + sign * dx, ny = y + sign * dy;
-      if (nx < 0 || ny < 0 || nx >= image.width || ny >= image.height || !holds(*image.at(nx, ny))) continue;
-      depths.push_back(double(*image.at(nx, ny)));
-    }
-    return depths;
-  };
-  const std::vector<double> axes[] = {neighbors(1, 0), neighbors(0, 1)};
-  // The light grazes a triangle whose bias moves it behind both of a texel's neighbors.
-  double moved = 0;
-  for (const std::vector<double>& n : axes)
-    if (n.size() == 2) {
-      const double nearest = bias > 0 ? std::max(n[0], n[1]) : std::min(n[0], n[1]);
-      moved = std::max(moved, (bias > 0 ? 1 : -1) * (stored - nearest));
-    }
-  const double own = stored - (bias > 0 ? moved : -moved);
-  // Vulkan 1.3, "Depth Bias": the larger of the changes along x and y. Along each axis the nearer neighbor is
-  // more likely of the same face; it shows 73 % of a sphere's slope at its limb.
-  constexpr double kMissed = 0.3;
-  double slope = 0, missed = 0;
-  for (const std::vector<double>& n : axes) {
-    if (n.empty()) continue;
-    double least = std::abs(n[0] - own), other = least;
-    if (n.size() == 2) {
-      least = std::min(least, std::abs(n[1] - own));
-      other = std::abs(n[0] + n[1] - 2 * own);
-    }
-    slope = std::max(slope, least);
-    missed = std::max({missed, kMissed * least, other});
-  }
-  return {own - map.depthBiasConstant - bias * slope,
-          map.depthStep / 2 + std::abs(bias) * (map.depthStep + missed)};
-}
-
-bool isClamped(const ShadowMap& map, float nothing, float stored) {
-  if (map.depth.encoding != PELLUCID_DEPTH_DEVICE) return false;
-  const double near = 1 - double(nothing);
-  return std::min(std::abs(stored - near), std::abs(stored - map.depthBiasConstant - near)) <= std::max(map.depthStep / 2, 1e-7);
-}
 
 namespace {
 
@@ -106,7 +61,7 @@ bool holdsBackFaces(const Light& light) {
 ShadowView::ShadowView(const Light& light, const ShadowMap& map)
     : light_(light),
       map_(map),
-      clipFromWorld_(toMatrix(map.clipFromWorld)),
+      clipFromWorld_(toGlm(map.clipFromWorld)),
       worldFromClip_(glm::inverse(clipFromWorld_)),
       viewFromWorld_(1.0) {
   const double determinant = glm::determinant(clipFromWorld_);
@@ -118,13 +73,18 @@ ShadowView::ShadowView(const Light& light, const ShadowMap& map)
       (map.depth.encoding == PELLUCID_DEPTH_DISTANCE && light.type == PELLUCID_LIGHT_DIRECTIONAL);
   if (needsView && !map.viewFromWorld)
     throw InputError("", "shadowMap.viewFromWorld", "missing, and the depth encoding needs it");
-  if (map.viewFromWorld) viewFromWorld_ = toMatrix(*map.viewFromWorld);
+  if (map.viewFromWorld) viewFromWorld_ = toGlm(*map.viewFromWorld);
   const std::size_t texels = map.depth.image.pixels();
   if (!map.exitDepth.empty() && map.exitDepth.pixels() != texels)
     throw InputError("", "shadowMap.exit", "has another size than the map");
   if (!map.casterMaterial.empty() && map.casterMaterial.size() != texels)
     throw InputError("", "shadowMap.casterMaterial", "has another size than the map");
   perspective_ = clipFromWorld_[0][3] != 0 || clipFromWorld_[1][3] != 0 || clipFromWorld_[2][3] != 0;
+  // Depth grows away from the light, or is reversed.
+  const Line ray = rayAt(0.5 * map.depth.image.width, 0.5 * map.depth.image.height);
+  const glm::dvec4 far = clipFromWorld_ * glm::dvec4(ray.at(1), 1),
+                   near = clipFromWorld_ * glm::dvec4(ray.origin, 1);
+  nothing_ = far.z * near.w > near.z * far.w ? 1.0f : 0.0f;
 }
 
 std::optional<ShadowView::Projected> ShadowView::project(const glm::dvec3& point) const {
@@ -152,16 +112,113 @@ const ShadowView* ShadowView::find(const std::vector<ShadowView>& maps, const gl
   return nearest;
 }
 
-float ShadowView::farEnd(const glm::dvec3& point, const glm::dvec3& travel) const {
-  const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(point, 1);
-  const glm::dvec4 along = clipFromWorld_ * glm::dvec4(travel, 0);
-  return along.z * clip.w - along.w * clip.z > 0 ? 1.0f : 0.0f;
+ShadowView::Line ShadowView::rayAt(double x, double y) const {
+  const glm::dvec2 ndc(x / map_.depth.image.width * 2 - 1, y / map_.depth.image.height * 2 - 1);
+  // Neither end of the depth range: an infinite one has no point there.
+  const glm::dvec4 a = worldFromClip_ * glm::dvec4(ndc, 0.25, 1),
+                   b = worldFromClip_ * glm::dvec4(ndc, 0.75, 1);
+  const glm::dvec3 p = glm::dvec3(a) / a.w, q = glm::dvec3(b) / b.w;
+  if (light_.type == PELLUCID_LIGHT_DIRECTIONAL) return {p, glm::normalize(toGlm(light_.direction))};
+  const glm::dvec3 eye = toGlm(light_.position);
+  return {eye, glm::normalize(0.5 * (p + q) - eye)};
 }
 
-bool ShadowView::holds(const glm::dvec3& point, float stored) const {
+bool ShadowView::holds(float stored) const {
   if (map_.depth.encoding != PELLUCID_DEPTH_DEVICE) return holdsSurface(stored);
-  const glm::dvec3 travel = -arrivalAt(light_, point).toLight;
-  return stored >= 0 && stored <= 1 && stored != farEnd(point, travel);
+  return stored >= 0 && stored <= 1 && stored != nothing_;
+}
+
+bool ShadowView::isClamped(int x, int y) const {
+  if (map_.depth.encoding != PELLUCID_DEPTH_DEVICE) return false;
+  const double stored = double(*map_.depth.image.at(x, y)), near = 1 - double(nothing_);
+  return std::min(std::abs(stored - near), std::abs(stored - map_.depthBiasConstant - near)) <=
+         std::max(map_.depthStep / 2, 1e-7);
+}
+
+ShadowView::DrawnDepth ShadowView::drawnAt(int x, int y) const {
+  const Image& image = map_.depth.image;
+  const double stored = double(*image.at(x, y)), bias = map_.depthBiasSlope;
+  if (bias == 0) return {stored - map_.depthBiasConstant, map_.depthStep / 2};
+  const auto neighbors = [&](int dx, int dy) {
+    std::vector<double> depths;
+    for (const int sign : {1, -1}) {
+      const int nx = x + sign * dx, ny = y + sign * dy;
+      if (nx < 0 || ny < 0 || nx >= image.width || ny >= image.height || !holds(*image.at(nx, ny))) continue;
+      depths.push_back(double(*image.at(nx, ny)));
+    }
+    return depths;
+  };
+  const std::vector<double> axes[] = {neighbors(1, 0), neighbors(0, 1)};
+  // The light grazes a triangle whose bias moves it behind both of a texel's neighbors.
+  double moved = 0;
+  for (const std::vector<double>& n : axes)
+    if (n.size() == 2) {
+      const double nearest = bias > 0 ? std::max(n[0], n[1]) : std::min(n[0], n[1]);
+      moved = std::max(moved, (bias > 0 ? 1 : -1) * (stored - nearest));
+    }
+  const double own = stored - (bias > 0 ? moved : -moved);
+  // Vulkan 1.3, "Depth Bias": the larger of the changes along x and y. Along each axis the nearer neighbor is
+  // more likely of the same face; it shows 73 % of a sphere's slope at its limb.
+  constexpr double kMissed = 0.3;
+  double slope = 0, missed = 0;
+  for (const std::vector<double>& n : axes) {
+    if (n.empty()) continue;
+    double least = std::abs(n[0] - own), other = least;
+    if (n.size() == 2) {
+      least = std::min(least, std::abs(n[1] - own));
+      other = std::abs(n[0] + n[1] - 2 * own);
+    }
+    slope = std::max(slope, least);
+    missed = std::max({missed, kMissed * least, other});
+  }
+  return {own - map_.depthBiasConstant - bias * slope,
+          map_.depthStep / 2 + std::abs(bias) * (map_.depthStep + missed)};
+}
+
+std::optional<glm::dvec3> ShadowView::surfaceAt(int x, int y) const {
+  if (!holds(*map_.depth.image.at(x, y))) return std::nullopt;
+  return unprojected(x, y, drawnAt(x, y).depth) - map_.offsetLength * rayAt(x + 0.5, y + 0.5).direction;
+}
+
+std::optional<glm::dvec3> ShadowView::pointAt(int x, int y, float stored) const {
+  return holds(stored) ? std::optional(unprojected(x, y, double(stored))) : std::nullopt;
+}
+
+double ShadowView::uncertain(int x, int y) const {
+  const DrawnDepth d = drawnAt(x, y);
+  if (!(d.uncertain > 0)) return 0;
+  return glm::distance(unprojected(x, y, d.depth + d.uncertain), unprojected(x, y, d.depth));
+}
+
+glm::dvec3 ShadowView::unprojected(int x, int y, double stored) const {
+  const Line ray = rayAt(x + 0.5, y + 0.5);
+  if (map_.depth.encoding == PELLUCID_DEPTH_DEVICE) {
+    const Image& image = map_.depth.image;
+    const glm::dvec4 p = worldFromClip_ * glm::dvec4((x + 0.5) / image.width * 2 - 1,
+                                                     (y + 0.5) / image.height * 2 - 1, stored, 1);
+    return glm::dvec3(p) / p.w;
+  }
+  if (map_.depth.encoding == PELLUCID_DEPTH_DISTANCE && light_.type != PELLUCID_LIGHT_DIRECTIONAL)
+    return ray.at(stored);
+  const glm::dvec4 planar = -glm::row(viewFromWorld_, 2);
+  const double from = glm::dot(planar, glm::dvec4(ray.origin, 1));
+  return ray.at((stored - from) / glm::dot(glm::dvec3(planar), ray.direction));
+}
+
+double ShadowView::across(int x, int y, const glm::dvec3& point) const {
+  const Line center = rayAt(x + 0.5, y + 0.5), right = rayAt(x + 1.5, y + 0.5),
+             below = rayAt(x + 0.5, y + 1.5);
+  if (light_.type == PELLUCID_LIGHT_DIRECTIONAL)
+    return std::abs(
+        glm::dot(glm::cross(right.origin - center.origin, below.origin - center.origin), center.direction));
+  const double distance = glm::distance(point, center.origin);
+  const glm::dvec3 solid = glm::cross(right.direction - center.direction, below.direction - center.direction);
+  return std::abs(glm::dot(solid, center.direction)) * distance * distance;
+}
+
+bool ShadowView::contains(const glm::dvec3& point) const {
+  const std::optional<Projected> p = project(point);
+  return p && p->beyond <= 0;
 }
 
 double ShadowView::deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const {
@@ -210,11 +267,10 @@ double ShadowView::distanceFrom(const glm::dvec3& point, const Projected& p, dou
   }
 }
 
-DrawnDepth ShadowView::moveAt(const glm::dvec3& point, const Projected& p) const {
-  const auto surfaceAt = [&](float stored) { return holds(point, stored); };
+ShadowView::DrawnDepth ShadowView::moveAt(const Projected& p) const {
   const float stored = *map_.depth.image.at(p.x, p.y);
-  if (!surfaceAt(stored)) return {-map_.depthBiasConstant, map_.depthStep / 2};
-  const DrawnDepth drawn = drawnDepth(map_, p.x, p.y, surfaceAt);
+  if (!holds(stored)) return {-map_.depthBiasConstant, map_.depthStep / 2};
+  const DrawnDepth drawn = drawnAt(p.x, p.y);
   return {drawn.depth - double(stored), drawn.uncertain};
 }
 
@@ -223,10 +279,9 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
   Lookup found{Kind::Empty, 0};
   found.texel = texelAt(point, p);
   const float stored = *map_.depth.image.at(x, y);
-  if (!holds(point, stored)) return found;
+  if (!holds(stored)) return found;
   found.kind = Kind::Surface;
-  found.clamped = map_.depth.encoding == PELLUCID_DEPTH_DEVICE &&
-                  isClamped(map_, farEnd(point, -arrivalAt(light_, point).toLight), stored);
+  found.clamped = isClamped(x, y);
   const auto lengthOf = [&](double depth, double step) {
     return std::abs(distanceFrom(point, p, depth + step) - distanceFrom(point, p, depth));
   };
@@ -234,20 +289,20 @@ ShadowView::Lookup ShadowView::lookup(const glm::dvec3& point, const Projected& 
   found.uncertain = lengthOf(double(stored), move.uncertain);
   if (!map_.exitDepth.empty()) {
     const float exit = *map_.exitDepth.at(x, y);
-    if (holds(point, exit)) {
+    if (holds(exit)) {
       found.fromExit = distanceFrom(point, p, double(exit));
       found.exitUncertain = lengthOf(double(exit), map_.depthStep);
     }
   }
   if (!map_.casterMaterial.empty())
-    found.casterMaterial = map_.casterMaterial[static_cast<std::size_t>(y * map_.depth.image.width + x)];
+    found.casterMaterial = map_.casterMaterial[pixelNumber(map_.depth.image, x, y)];
   return found;
 }
 
 ShadowView::Lookup ShadowView::at(const glm::dvec3& point) const {
   const std::optional<Projected> p = project(point);
   if (!p) return {Kind::Outside, 0};
-  return lookup(point, *p, p->x, p->y, moveAt(point, *p));
+  return lookup(point, *p, p->x, p->y, moveAt(*p));
 }
 
 std::optional<std::array<ShadowView::Tap, 4>> ShadowView::around(const glm::dvec3& point) const {
@@ -256,7 +311,7 @@ std::optional<std::array<ShadowView::Tap, 4>> ShadowView::around(const glm::dvec
   const Image& image = map_.depth.image;
   const glm::dvec2 place = (glm::dvec2(p->ndc) * 0.5 + 0.5) * glm::dvec2(image.width, image.height) - 0.5;
   const glm::dvec2 from = glm::floor(place), part = place - from;
-  const DrawnDepth move = moveAt(point, *p);
+  const DrawnDepth move = moveAt(*p);
   std::array<Tap, 4> taps;
   for (int i = 0; i < 4; ++i) {
     const int right = i & 1, down = i >> 1;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -10,20 +9,6 @@
 #include "capture/capture.h"
 
 namespace pellucid::harness::reference {
-
-// The depth of the surface that was drawn into a shadow map, without the biases that the drawing added. In
-// units of the stored depth.
-struct DrawnDepth {
-  double depth;
-  double uncertain;  // how far it may be off
-};
-
-// Depth of a texel that stores a surface. `holds`: true for a stored depth of a surface.
-DrawnDepth drawnDepth(const ShadowMap& map, int x, int y, const std::function<bool(float)>& holds);
-
-// True where a device depth lies on the map's near plane, where engines clamp what lies before it: where
-// light enters is not known. `nothing`: 0 or 1, the depth that the map was cleared to.
-bool isClamped(const ShadowMap& map, float nothing, float stored);
 
 struct Arrival {
   glm::dvec3 toLight;     // unit, from the point
@@ -60,7 +45,7 @@ public:
     // From what lies beside the map; Surface only.
     std::optional<double> fromExit = {};     // as distance, from the exit depth; absent: none is known
     std::optional<int> casterMaterial = {};  // of the stored surface, 0: opaque; absent: not given
-    bool clamped = false;                    // isClamped
+    bool clamped = false;                    // isClamped()
   };
   // The first of a light's maps that contains the point. A light of several maps has no seams: where none
   // does, the nearest one does if the point is at most half a texel outside. nullptr: no map does.
@@ -77,6 +62,21 @@ public:
   };
   std::optional<std::array<Tap, 4>> around(const glm::dvec3& point) const;
 
+  // ---- Texels
+
+  // The surface that a texel stores; absent where it holds nothing.
+  std::optional<glm::dvec3> surfaceAt(int x, int y) const;
+  // The point of the texel's ray that has a depth in the map's encoding.
+  std::optional<glm::dvec3> pointAt(int x, int y, float stored) const;
+  // True where it lies on the map's near plane, where engines clamp what lies before it: where light enters
+  // is not known.
+  bool isClamped(int x, int y) const;
+  // Scene units along the light's ray that the texel's surface may be off by.
+  double uncertain(int x, int y) const;
+  // Area across the light's ray that a texel covers at a point, square scene units.
+  double across(int x, int y, const glm::dvec3& point) const;
+  bool contains(const glm::dvec3& point) const;
+
 private:
   struct Projected {
     glm::dvec3 ndc;
@@ -84,25 +84,39 @@ private:
     double beyond;  // texels outside of the map, at most kSeam; not above 0 inside
   };
   static constexpr double kSeam = 0.5;
+  struct Line {
+    glm::dvec3 origin, direction;  // direction of travel, unit
+    glm::dvec3 at(double t) const { return origin + t * direction; }
+  };
+  // The depth of the surface that was drawn into a texel, without the biases that the drawing added. In units
+  // of the stored depth.
+  struct DrawnDepth {
+    double depth;
+    double uncertain;  // how far it may be off
+  };
+
   std::optional<Projected> project(const glm::dvec3& point) const;
+  // The light's ray through continuous map coordinates.
+  Line rayAt(double x, double y) const;
+  glm::dvec3 unprojected(int x, int y, double stored) const;
   // As Lookup::distance, of a depth.
   double distanceFrom(const glm::dvec3& point, const Projected& p, double stored) const;
-  bool holds(const glm::dvec3& point, float stored) const;
+  bool holds(float stored) const;
+  DrawnDepth drawnAt(int x, int y) const;  // of a texel that stores a surface
   // From what the nearest texel stores to what was drawn, in units of the stored depth.
-  DrawnDepth moveAt(const glm::dvec3& point, const Projected& p) const;
+  DrawnDepth moveAt(const Projected& p) const;
   // The lookup of texel (x, y).
   Lookup lookup(const glm::dvec3& point, const Projected& p, int x, int y, const DrawnDepth& move) const;
   double texelAt(const glm::dvec3& point, const Projected& p) const;
   double deviceDistance(const glm::dvec3& point, const Projected& p, double stored) const;
   double planarDistance(const glm::dvec3& point, double stored) const;
   double radialDistance(const glm::dvec3& point, double stored) const;
-  // The end of 0..1 that lies away from the light, which the map was cleared to.
-  float farEnd(const glm::dvec3& point, const glm::dvec3& travel) const;
 
   const Light& light_;
   const ShadowMap& map_;
   glm::dmat4 clipFromWorld_, worldFromClip_, viewFromWorld_;
   bool perspective_;
+  float nothing_;  // the end of 0..1 that lies away from the light, which the map was cleared to
 };
 
 }  // namespace pellucid::harness::reference

@@ -87,18 +87,14 @@ public:
   }
 
 private:
-  std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
-           static_cast<std::size_t>(x);
-  }
-
   // fn(x, y, index) for every pixel with a material.
   template <typename Fn>
   void forEachPixel(const char* label, const Fn& fn) const {
     Progress progress(label, static_cast<std::uint64_t>(capture_.height));
     parallelRows(capture_.height, 0, [&](int y) {
       for (int x = 0; x < capture_.width; ++x)
-        if (capture_.material[index(x, y)] != 0) fn(x, y, index(x, y));
+        if (const std::size_t i = pixelNumber(capture_.irradiance, x, y); capture_.material[i] != 0)
+          fn(x, y, i);
       progress.advance();
     });
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/error.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness::reference {
 namespace {
@@ -28,7 +29,7 @@ void requireImage(const Capture& c, const Image& image, const char* field, int c
 SurfaceReader::SurfaceReader(const Capture& capture)
     : capture_(capture),
       camera_(capture.clipFromView, capture.width, capture.height),
-      worldFromView_(glm::inverse(toMatrix(capture.viewFromWorld))),
+      worldFromView_(glm::inverse(toGlm(capture.viewFromWorld))),
       quadColumns_((capture.width + 1) / 2),
       quadRows_((capture.height + 1) / 2) {
   requireImage(capture, capture.frontDepth.image, "frontDepth", 1, false);
@@ -36,8 +37,7 @@ SurfaceReader::SurfaceReader(const Capture& capture)
   requireImage(capture, capture.irradiance, "irradiance", 3, false);
   requireImage(capture, capture.hiddenIrradiance, "hiddenIrradiance", 3, true);
   requireImage(capture, capture.albedo, "albedo", 3, true);
-  const std::size_t pixels =
-      static_cast<std::size_t>(capture.width) * static_cast<std::size_t>(capture.height);
+  const std::size_t pixels = capture.irradiance.pixels();
   if (capture.material.size() != pixels)
     throw InputError(capture.name, "material",
                      std::to_string(capture.material.size()) + " pixels; need " + std::to_string(pixels));
@@ -46,8 +46,7 @@ SurfaceReader::SurfaceReader(const Capture& capture)
 }
 
 std::uint8_t SurfaceReader::materialAt(int x, int y) const {
-  return capture_.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture_.width) +
-                           static_cast<std::size_t>(x)];
+  return capture_.material[pixelNumber(capture_.irradiance, x, y)];
 }
 
 std::optional<double> SurfaceReader::planarDepth(const DepthImage& depth, int x, int y) const {

@@ -73,22 +73,10 @@ Matrix lookAt(const Vector3& eye, const Vector3& target, const Vector3& up) {
   const glm::dvec3 right = glm::normalize(glm::cross(axis, upward));
   const glm::dvec3 top = glm::cross(right, axis);
   const glm::dvec3 depth = -axis;
-  return {right.x,
-          top.x,
-          depth.x,
-          0,
-          right.y,
-          top.y,
-          depth.y,
-          0,
-          right.z,
-          top.z,
-          depth.z,
-          0,
-          -glm::dot(right, position),
-          -glm::dot(top, position),
-          -glm::dot(depth, position),
-          1};
+  glm::dmat4 viewFromWorld(glm::transpose(glm::dmat3(right, top, depth)));
+  viewFromWorld[3] =
+      glm::dvec4(-glm::dot(right, position), -glm::dot(top, position), -glm::dot(depth, position), 1);
+  return fromGlm(viewFromWorld);
 }
 
 double deviceDepth(const Matrix& clipFromView, double viewZ) {

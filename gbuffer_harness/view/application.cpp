@@ -50,9 +50,8 @@ DeviceOptions deviceOptions(const ApplicationOptions& options, const Desktop* de
 
 // The screen as an image, which the window shows and screenshots are made of.
 std::unique_ptr<RenderTarget> makeScreen(Device& device, int width, int height) {
-  return std::make_unique<RenderTarget>(
-      device, width, height,
-      std::vector<RenderTarget::Color>{{kScreenFormat, {.float32 = {0.08f, 0.08f, 0.09f, 1}}}}, std::nullopt);
+  const VkClearColorValue gray{.float32 = {0.08f, 0.08f, 0.09f, 1}};
+  return std::make_unique<RenderTarget>(device, RenderTarget::Shape{width, height, {{kScreenFormat, gray}}});
 }
 
 class Application {
@@ -77,7 +76,7 @@ public:
     int left = kFramesAfterInput;
     while (!done()) {
       if (window_) {
-        const bool idle = left == 0 && options_.frames == 0 && !panel_.measure;
+        const bool idle = left == 0 && options_.frames == 0;
         window_->events(idle);
         if (idle) left = kFramesAfterInput;
       }
@@ -132,17 +131,16 @@ private:
     ++report_.frames;
     gui_->poll(width_, height_);
     Changes changes;
-    gui_->begin();
+    ImGui::NewFrame();
     changes.add(controls_.apply(state_, input(), *source_, picture()));
     changes.add(drawPanel(state_, panel_, *frames_, *source_,
                           {0, 0, static_cast<float>(width_), static_cast<float>(height_)}));
     followWindow(changes);
-    changes.frame |= panel_.measure;
     update(changes);
     const ScreenRect picture = this->picture();
     const ImVec2 cursor = ImGui::GetIO().MousePos;
     drawOverlay(state_, panel_, *frames_, picture, cursor.x, cursor.y);
-    gui_->end();
+    ImGui::Render();
     device_.run([&](VkCommandBuffer commandBuffer) {
       screen_->begin(commandBuffer);
       display_->draw(commandBuffer, *frames_, state_.display, picture, panel_.colors);
@@ -242,7 +240,6 @@ void Application::open(const SceneToView& scene) {
   source_ = std::move(source);
   state_ = std::move(state);
   panel_.colors = falseColorsOf(state_.display, *frames_);
-  panel_.cost = {};
 }
 
 void Application::save(const std::filesystem::path& capture) {

@@ -1,7 +1,6 @@
 #include "view/frames.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <memory>
@@ -23,21 +22,20 @@ namespace {
 // ways that no engine's images have here: distances in shadow maps, maps drawn as an engine does or in one
 // image, other formats than floats and halves.
 std::shared_ptr<const InputImages> drawnInputs(const DrawnFrame& drawn, const ReplaySettings& settings) {
-  const RasterOptions& options = drawn.options();
-  const DrawnFrame::Images& images = drawn.images();
+  const RasterOptions& options = drawn.options;
   if (!areOnDevice(options) || preExposureOf(settings) != 1 || settings.materialMask != 0)
-    return std::make_shared<const InputImages>(drawn.device(), drawn.capture(), settings);
+    return std::make_shared<const InputImages>(drawn.device, drawn.capture(), settings);
   InputImages::Images inputs;
   inputs.shape.backDepth = drawn.hasBackDepth();
   inputs.shape.albedo = true;
-  inputs.frontDepth = images.frontDepth;
-  if (drawn.hasBackDepth()) inputs.backDepth = images.backDepth;
-  const auto& front = images.front.target;
+  inputs.frontDepth = drawn.frontDepth;
+  if (drawn.hasBackDepth()) inputs.backDepth = drawn.backDepth;
+  const auto& front = drawn.front.target;
   inputs.albedo = sharedImage(front, FrontTarget::kAlbedoObject);
   inputs.material = sharedImage(front, FrontTarget::kMaterial);
   inputs.irradiance = drawn.irradianceIn(irradianceFormat(settings));
   const int size = options.shadowSize;
-  for (const std::vector<DrawnMap>& maps : images.maps)
+  for (const std::vector<DrawnMap>& maps : drawn.maps)
     for (const DrawnMap& map : maps) {
       FrameShape::Map& place = inputs.shape.maps.emplace_back();
       place.extent = {size, size};
@@ -78,7 +76,7 @@ VkRect2D rectOf(int x, int y, int width, int height) {
 double coveredPartOf(const Scene& scene) {
   const Capture& capture = scene.capture;
   const double pixels = static_cast<double>(capture.width) * capture.height;
-  if (scene.drawn) return scene.drawn->counts().material / pixels;
+  if (scene.drawn) return scene.drawn->counts.material / pixels;
   return 1 - static_cast<double>(std::count(capture.material.begin(), capture.material.end(), 0)) / pixels;
 }
 
@@ -121,7 +119,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
   const bool upload = scene || state.settings.outputFormat != format_;
   const bool compile = changes.materials || !inputs_;
   const bool frames = upload || compile || changes.frame;
-  const auto start = std::chrono::steady_clock::now();
   std::optional<Scene> rendered;
   if (scene) {
     rendered = source_.render(state);
@@ -135,8 +132,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
       !upload      ? inputs_
       : seen.drawn ? drawnInputs(*seen.drawn, state.settings)
                    : std::make_shared<const InputImages>(device_, seen.capture, state.settings);
-  const double milliseconds =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   const std::vector<MaterialSource> sources = source_.materials(state);
   std::vector<PellucidMaterial> materials = materials_;
   if (compile) {
@@ -172,7 +167,6 @@ void ViewFrames::update(const ViewState& state, const Changes& changes) {
     scene_ = std::move(*rendered);
     hasSurfaces_ = hasMaps_ = hasMaterial_ = !scene_.drawn;
     coveredPart_ = coveredPartOf(scene_);
-    sceneMilliseconds_ = milliseconds;
   }
   scene_.capture.materials = sources;
   inputs_ = inputs;
@@ -218,7 +212,7 @@ const std::vector<std::uint8_t>& ViewFrames::material() const {
 
 const std::vector<DispatchTime>& ViewFrames::sceneTimes() const {
   static const std::vector<DispatchTime> kNone;
-  return scene_.drawn ? scene_.drawn->times() : kNone;
+  return scene_.drawn ? scene_.drawn->times : kNone;
 }
 
 const Image& ViewFrames::image(Shown shown) const {

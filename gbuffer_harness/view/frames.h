@@ -47,8 +47,6 @@ public:
   // Times of the last recording of Shown::After, and of drawing the scene, by the GPU's clock.
   const std::vector<DispatchTime>& times() const { return times_; }
   const std::vector<DispatchTime>& sceneTimes() const;  // empty for scenes that the host makes
-  // Wall-clock time of the last source.render() and of handing it over.
-  double sceneMilliseconds() const { return sceneMilliseconds_; }
   // How often Shown::After was recorded.
   std::uint64_t recorded() const { return recorded_; }
 
@@ -79,7 +77,6 @@ private:
   std::map<Shown, std::shared_ptr<const FrameRun>> runs_;  // of After, Through and Debug
   mutable std::map<Shown, Image> images_;                  // downloaded when first asked for
   std::vector<DispatchTime> times_;
-  double sceneMilliseconds_ = 0;
   std::uint64_t recorded_ = 0;
   VkFormat format_ = VK_FORMAT_UNDEFINED;  // of inputs_
   bool forget_ = false;

@@ -36,7 +36,7 @@ Gui::Gui(Device& device, const RenderTarget& target, GLFWwindow* window)
   info.MinImageCount = info.ImageCount = 2;
   info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   info.CheckVkResultFn = [](VkResult result) { check(result, "Dear ImGui"); };
-  ImGui_ImplVulkan_Init(&info, target.renderPass());
+  ImGui_ImplVulkan_Init(&info, target.pass().renderPass());
   device.run([](VkCommandBuffer commandBuffer) { ImGui_ImplVulkan_CreateFontsTexture(commandBuffer); });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
@@ -62,10 +62,6 @@ void Gui::poll(int width, int height) {
   }
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
 }
-
-void Gui::begin() { ImGui::NewFrame(); }
-
-void Gui::end() { ImGui::Render(); }
 
 void Gui::record(VkCommandBuffer commandBuffer) const {
   ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commandBuffer);

@@ -11,18 +11,16 @@ namespace pellucid::harness {
 
 class Gui {
 public:
-  // Draws into targets like `target`. `window`: whose input it takes; null: none, and sizes are told to
-  // begin().
+  // Draws into targets like `target`. `window`: whose input it takes; null: none.
   Gui(Device& device, const RenderTarget& target, GLFWwindow* window);
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
 
-  // The input of the window; then callers may change ImGui's IO before begin(). width, height: pixels.
+  // The input of the window; then callers may change ImGui's IO before ImGui::NewFrame(). width, height:
+  // pixels.
   void poll(int width, int height);
-  void begin();                                      // ImGui calls may follow
-  void end();                                        // nothing of this frame follows
-  void record(VkCommandBuffer commandBuffer) const;  // what was drawn between them, within the target's pass
+  void record(VkCommandBuffer commandBuffer) const;  // what ImGui::Render() made, within the target's pass
 
 private:
   Device& device_;

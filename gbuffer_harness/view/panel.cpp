@@ -161,6 +161,25 @@ Changes drawCamera(ViewState& state, PanelState& panel, const Source& source) {
   return changes;
 }
 
+// GPU times of the last frame.
+void drawCost(const ViewFrames& frames) {
+  if (!ImGui::CollapsingHeader("GPU time", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  const auto milliseconds = [](const std::vector<DispatchTime>& times) {
+    double sum = 0;
+    for (const DispatchTime& time : times) sum += time.microseconds / 1000;
+    return sum;
+  };
+  const PellucidPlan& plan = frames.run(Shown::After).plan();
+  ImGui::Text("%.3f ms in %u dispatches; material covers %.1f %%", milliseconds(frames.times()),
+              plan.dispatchCount, 100 * frames.coveredPart());
+  if (!frames.sceneTimes().empty()) ImGui::Text("rasterizer: %.3f ms", milliseconds(frames.sceneTimes()));
+  for (const DispatchTime& time : frames.times())
+    ImGui::Text("%8.1f us  %s", time.microseconds, time.name.c_str());
+  for (std::uint32_t i = 0; i < plan.skipCount; ++i)
+    ImGui::TextWrapped("skipped: %u x %s (%s)", plan.skips[i].count, plan.skips[i].what,
+                       plan.skips[i].reason);
+}
+
 }  // namespace
 
 bool dragReals(const char* label, double* values, int count, double low, double high) {
@@ -191,7 +210,7 @@ Changes drawPanel(ViewState& state, PanelState& panel, const ViewFrames& frames,
   changes.add(drawMaterials(state));
   changes.add(drawLights(state, source));
   changes.add(drawCamera(state, panel, source));
-  drawCost(panel, frames);
+  drawCost(frames);
   if (ImGui::CollapsingHeader("Save")) {
     ImGui::InputText("capture", panel.savePath, sizeof panel.savePath);
     if (ImGui::Button("save capture, settings, result and picture")) panel.save = true;

@@ -1,12 +1,11 @@
-// The panel beside the picture: draws the state and changes it. Calls Dear ImGui between Gui::begin() and
-// end().
+// The panel beside the picture: draws the state and changes it. Calls Dear ImGui between its NewFrame()
+// and Render().
 #pragma once
 
 #include <array>
 #include <optional>
 #include <string>
 
-#include "view/cost.h"
 #include "view/display.h"
 #include "view/frames.h"
 #include "view/source.h"
@@ -16,8 +15,6 @@ namespace pellucid::harness {
 
 // Values that the panel knows besides the state, kept between frames of the screen.
 struct PanelState {
-  CostHistory cost;
-  bool measure = false;       // frames are recorded without end, for their times
   bool followWindow = false;  // the picture is as large as its area
   std::string message;        // of what went wrong or was done last
   bool isError = false;
@@ -43,6 +40,5 @@ bool dragReals(const char* label, double* values, int count, double low, double 
 // Parts of the panel.
 Changes drawMaterials(ViewState& state);
 Changes drawLights(ViewState& state, const Source& source);
-void drawCost(PanelState& panel, const ViewFrames& frames);
 
 }  // namespace pellucid::harness

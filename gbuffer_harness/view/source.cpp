@@ -66,7 +66,7 @@ public:
     model_.materials = state.materials;
     takeReflectances();
     std::shared_ptr<const DrawnFrame> drawn = rasterizer_.draw(state.camera.lens, options);
-    return {drawn->outline(), drawn, drawn->warnings()};
+    return {drawn->outline, drawn, drawn->warnings()};
   }
 
 private:

@@ -41,8 +41,9 @@ Image rasterizeTransmitted(Device& device, const Model& model, const Capture& ca
   TargetPool targets(device);
   const FrontTarget front(targets, options);
   const bool keepGreater = options.reversedZ;
-  const RenderTarget target(device, options.width, options.height,
-                            {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater));
+  const RenderTarget target(
+      device,
+      {options.width, options.height, {{VK_FORMAT_R32G32B32A32_SFLOAT, clearTo(0)}}, farDepth(keepGreater)});
   const PlannedInputs planned{plan, frame, constants.handle()};
   device.run([&](VkCommandBuffer commands) {
     front.record(commands, uploaded, view);

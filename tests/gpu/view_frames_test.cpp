@@ -237,8 +237,7 @@ protected:
   static constexpr int kMargin = 8, kScale = 2, kSide = kScale * kSize + 2 * kMargin;
 
   ViewScreen()
-      : screen_(device(), kSide, kSide, {{VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {0, 0, 1, 1}}}},
-                std::nullopt),
+      : screen_(device(), {kSide, kSide, {{VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {0, 0, 1, 1}}}}}),
         display_(device(), screen_) {}
 
   Image draw(Shown shown, const ScreenRect& clip, float low = 0, float high = 1) {

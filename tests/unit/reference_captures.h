@@ -12,6 +12,7 @@
 #include "reference/camera.h"
 #include "reference/diffusion.h"
 #include "reference/surface.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness::reference {
 
@@ -93,7 +94,7 @@ inline Capture obliqueBall(bool sheared, double* cosines,
       c.viewFromWorld[4 * i + 2] = -direction[static_cast<int>(i)];
     }
   }
-  const glm::dmat4 viewFromWorld = toMatrix(c.viewFromWorld), worldFromView = glm::inverse(viewFromWorld);
+  const glm::dmat4 viewFromWorld = toGlm(c.viewFromWorld), worldFromView = glm::inverse(viewFromWorld);
   const Camera camera(c.clipFromView, kSide, kSide);
   for (int py = 0; py < kSide; ++py)
     for (int px = 0; px < kSide; ++px) {
