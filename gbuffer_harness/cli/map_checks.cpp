@@ -6,6 +6,7 @@
 
 #include "cli/capture_checks.h"
 #include "reference/camera.h"
+#include "scene/vector.h"
 
 namespace pellucid::harness {
 namespace {
@@ -16,8 +17,8 @@ constexpr double kTexels = 8;
 class MapView {
 public:
   MapView(const Light& light, const ShadowMap& map)
-      : light_(light), map_(map), clipFromWorld_(reference::toMatrix(map.clipFromWorld)) {
-    if (map.viewFromWorld) viewFromWorld_ = reference::toMatrix(*map.viewFromWorld);
+      : light_(light), map_(map), clipFromWorld_(toGlm(map.clipFromWorld)) {
+    if (map.viewFromWorld) viewFromWorld_ = toGlm(*map.viewFromWorld);
   }
 
   // Nothing outside of the map; true where the map has a surface behind `world`, or none at all.
@@ -73,7 +74,7 @@ private:
 std::vector<glm::dvec3> surfacesOf(const Capture& capture) {
   constexpr int kAcross = 64;
   const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
-  const glm::dmat4 worldFromView = glm::inverse(reference::toMatrix(capture.viewFromWorld));
+  const glm::dmat4 worldFromView = glm::inverse(toGlm(capture.viewFromWorld));
   std::vector<glm::dvec3> surfaces;
   for (int y = 0; y < capture.height; y += std::max(capture.height / kAcross, 1))
     for (int x = 0; x < capture.width; x += std::max(capture.width / kAcross, 1)) {
