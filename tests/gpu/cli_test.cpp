@@ -84,7 +84,6 @@ TEST_F(Cli, BadInput) {
          "renderRect is 8, 8 + 20 x 4, outside the 16 x 16 image");
   expect(4, "replay " + path("plane.exr") + " --device NoSuchDevice", "NoSuchDevice");
   expect(3, "capture --procedural nothing -o " + path("x.exr"), "no scene \"nothing\"; there are ear");
-  expect(3, "evaluate " + path("plane.exr"), "truth");
 }
 
 TEST_F(Cli, TurntableAndSequence) {
