@@ -51,9 +51,6 @@ scene sky "Sky only" "No light but a sky. Its light spreads, and that of hidden 
 scene lights "Many lights" "Twelve lights of all hues around a head, each with a shadow map." -- --procedural head --set view=1 --set keyLight=0 --set rimLight=0 \
   --set lights=12
 
-# Four frames of a path and what changes in them.
-[[ -z $models ]] || "$pellucid" flicker "${head[@]}" --size 256x256 --pixels 1 --path orbit --frames 13 --picture "$pictures/orbit.png" >"$work/orbit.md"
-
 cat >"$work/table.md" <<EOF
 $start
 Each picture is under one exposure: without Pellucid | with Pellucid | path traced for $seconds seconds by $(nproc) cores. The error is the relative RMSE of R, G and B against path

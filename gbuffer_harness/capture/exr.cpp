@@ -1,6 +1,7 @@
 #include "capture/exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -20,15 +21,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <set>
 #include <utility>
 
-#include "capture/exr_attributes.h"
 #include "common/error.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
@@ -52,6 +55,42 @@ void checkHeader(const std::filesystem::path& path) {
   if (result == EXR_ERR_SUCCESS) return;
   if (complaint.empty()) complaint = exr_get_default_error_message(result);
   throw InputError(path.string(), "", "damaged OpenEXR header: " + complaint);
+}
+
+// Three decimals are what programs write; ACES' red differs from Rec. 709's by .07.
+constexpr float kSamePoint = 0.002f;
+
+constexpr const char* kAdvice = "; they are read as they are: convert them to linear Rec. 709";
+
+std::string otherPrimaries(const Imf::Chromaticities& found) {
+  const Imf::Chromaticities rec709;
+  const struct {
+    const char* name;
+    Imath::V2f found, wanted;
+  } points[] = {{"red", found.red, rec709.red},
+                {"green", found.green, rec709.green},
+                {"blue", found.blue, rec709.blue},
+                {"white", found.white, rec709.white}};
+  for (const auto& point : points) {
+    if ((point.found - point.wanted).length() <= kSamePoint) continue;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "chromaticities: %s of its colors is at (%.4g, %.4g), not at Rec. 709's (%.4g, %.4g)",
+                  point.name, double(point.found.x), double(point.found.y), double(point.wanted.x),
+                  double(point.wanted.y));
+    return std::string(text) + kAdvice;
+  }
+  return "";
+}
+
+// True of names that OpenImageIO, OpenColorIO and Blender have for linear colors of Rec. 709, and for data.
+bool keepsRec709(std::string name) {
+  static const std::set<std::string> known = {
+      "",          "data",           "linear",           "scenelinear",  "raw",          "unknown",
+      "linrec709", "linrec709scene", "linsrgb",          "linearrec709", "linearsrgb",   "linearrec709srgb",
+      "noncolor",  "linearbt709",    "utilitylinearsrgb", "utilityraw"};
+  std::erase_if(name, [](unsigned char c) { return !std::isalnum(c); });
+  return known.count(lower(name)) > 0;
 }
 
 struct Size {
@@ -252,7 +291,16 @@ std::string ExrFile::viewOf(int part, const std::string& channel) const {
 }
 
 std::vector<std::string> ExrFile::unusedAttributes(int part) const {
-  return harness::unusedAttributes(impl_->file->header(part));
+  const Imf::Header& header = impl_->file->header(part);
+  std::vector<std::string> sentences;
+  if (const auto* points = header.findTypedAttribute<Imf::ChromaticitiesAttribute>("chromaticities"))
+    if (std::string sentence = otherPrimaries(points->value()); !sentence.empty())
+      sentences.push_back(std::move(sentence));
+  for (const std::string name : {"colorInteropID", "oiio:ColorSpace"})
+    if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>(name);
+        space && !keepsRec709(space->value()))
+      sentences.push_back(name + ": its colors are \"" + space->value() + "\"" + kAdvice);
+  return sentences;
 }
 
 std::array<int, 2> ExrFile::dataOrigin(int part) const {

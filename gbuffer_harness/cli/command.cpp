@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <type_traits>
 
@@ -41,10 +40,6 @@ const CommandOption& CommandOption::positive() const {
   option_->check(CLI::PositiveNumber);
   return *this;
 }
-const CommandOption& CommandOption::notNegative() const {
-  option_->check(CLI::NonNegativeNumber);
-  return *this;
-}
 const CommandOption& CommandOption::oneOf(std::initializer_list<const char*> values) const {
   option_->check(CLI::IsMember(std::vector<std::string>(values.begin(), values.end())));
   return *this;
@@ -59,10 +54,6 @@ const CommandOption& CommandOption::separatedBy(char separator) const {
 }
 const CommandOption& CommandOption::excludes(const CommandOption& other) const {
   option_->excludes(other.option_);
-  return *this;
-}
-const CommandOption& CommandOption::needs(const CommandOption& other) const {
-  option_->needs(other.option_);
   return *this;
 }
 
@@ -87,7 +78,6 @@ CommandOption Command::option(const std::string& name, T& to, const std::string&
 #define PELLUCID_OPTION(...) \
   template CommandOption Command::option(const std::string&, __VA_ARGS__&, const std::string&) const;
 PELLUCID_OPTION(std::string)
-PELLUCID_OPTION(std::filesystem::path)
 PELLUCID_OPTION(int)
 PELLUCID_OPTION(unsigned)
 PELLUCID_OPTION(std::uint64_t)
@@ -96,12 +86,9 @@ PELLUCID_OPTION(double)
 PELLUCID_OPTION(std::optional<int>)
 PELLUCID_OPTION(std::optional<unsigned>)
 PELLUCID_OPTION(std::optional<std::uint64_t>)
-PELLUCID_OPTION(std::optional<float>)
 PELLUCID_OPTION(std::optional<double>)
 PELLUCID_OPTION(std::vector<std::string>)
 PELLUCID_OPTION(std::vector<int>)
-PELLUCID_OPTION(std::vector<float>)
-PELLUCID_OPTION(std::vector<double>)
 
 template <class Flag>
 CommandOption Command::flag(const char* name, Flag& to, const std::string& help) const {

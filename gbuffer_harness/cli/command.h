@@ -32,13 +32,11 @@ public:
   const CommandOption& required() const;
   const CommandOption& range(int least, int most) const;
   const CommandOption& range(double least, double most) const;
-  const CommandOption& positive() const;     // above 0
-  const CommandOption& notNegative() const;  // at least 0
+  const CommandOption& positive() const;  // above 0
   const CommandOption& oneOf(std::initializer_list<const char*> values) const;
   const CommandOption& oneOf(std::initializer_list<int> values) const;
   const CommandOption& separatedBy(char separator) const;  // of a list
   const CommandOption& excludes(const CommandOption& other) const;
-  const CommandOption& needs(const CommandOption& other) const;
 
 private:
   CLI::Option* option_;

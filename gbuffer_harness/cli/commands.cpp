@@ -10,7 +10,6 @@ void addCommands(const Command& app) {
   addMaterialCommand(app);
   addTruthCommand(app);
   addCompareCommand(app);
-  addEvaluateCommand(app);
   addFlickerCommand(app);
   addCaptureCommand(app);
   addStressCommand(app);

@@ -15,7 +15,6 @@ void addPlanCommand(const Command& app);
 void addMaterialCommand(const Command& app);
 void addCompareCommand(const Command& app);
 void addTruthCommand(const Command& app);
-void addEvaluateCommand(const Command& app);
 void addFlickerCommand(const Command& app);
 void addCaptureCommand(const Command& app);
 void addStressCommand(const Command& app);

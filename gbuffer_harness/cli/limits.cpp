@@ -1,11 +1,11 @@
 #include "cli/limits.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "common/error.h"
+#include "common/parse.h"
 
 namespace pellucid::harness {
 
@@ -20,12 +20,10 @@ Limits::Limits(std::vector<LimitKind> kinds, const std::vector<std::string>& tex
       for (const LimitKind& k : kinds) known += (known.empty() ? "" : ", ") + k.name + "=";
       throw UsageError("--limit \"" + text + "\": must be one of " + known + " and a number");
     }
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + equals + 1, end, value);
-    if (error != std::errc() || stop != end || !(value >= 0))
+    const std::optional<double> value = numberIn<double>(text.substr(equals + 1));
+    if (!value || !(*value >= 0))
       throw UsageError("--limit \"" + text + "\": \"" + text.substr(equals + 1) + "\" is not a number >= 0");
-    limits_.push_back({*kind, value});
+    limits_.push_back({*kind, *value});
   }
 }
 

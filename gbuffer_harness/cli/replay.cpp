@@ -25,40 +25,11 @@
 #include "common/png.h"
 #include "common/progress.h"
 #include "common/whole_file.h"
-#include "replay/block_map.h"
 #include "replay/exposure.h"
 #include "replay/replay.h"
 
 namespace pellucid::harness {
 namespace {
-
-std::string row(const char* name, const Groups& groups) {
-  char line[128];
-  const double part =
-      groups.most > 0 ? 100 * static_cast<double>(groups.run) / static_cast<double>(groups.most) : 0;
-  std::snprintf(line, sizeof line, "%-22s %12llu %12llu %6.1f\n", name,
-                static_cast<unsigned long long>(groups.run), static_cast<unsigned long long>(groups.most),
-                part);
-  return line;
-}
-
-std::string heading(const char* first, const char* run) {
-  char line[128];
-  std::snprintf(line, sizeof line, "%-22s %12s %12s %6s\n", first, run, "of most", "%");
-  return line;
-}
-
-// Tables for a person: groups of each dispatch, and totals of the frame.
-std::string statisticsText(const PellucidPlan& plan, const Statistics& s) {
-  std::string text = heading("statistics", "groups run");
-  for (uint32_t i = 0; i < plan.dispatchCount; ++i) text += row(plan.dispatches[i].name, s.dispatches[i]);
-  text += heading("total", "run");
-  if (s.lists) text += row("blocks with material", s.blocks);
-  if (s.probes.most > 0) text += row("probe groups", s.probes);
-  if (s.entryPoints.most > 0) text += row("entry point groups", s.entryPoints);
-  if (!s.lists) text += "no lists of blocks: " + whyNoLists(plan) + "\n";
-  return text + "lights that can contribute: " + std::to_string(plan.activeLights) + "\n";
-}
 
 constexpr const char* kSettingsAttribute = "pellucid.settings";
 constexpr const char* kDebugAttribute = "pellucid.debug";
@@ -66,7 +37,7 @@ constexpr uint32_t kDefaultRepeat = 3;
 
 struct Options {
   std::string input, output, device, triptych, frames;
-  bool png = false, stats = false, overwrite = false;
+  bool png = false, overwrite = false;
   float exposure = 0;
   int jobs = 2;
   std::optional<uint32_t> repeat;
@@ -94,6 +65,9 @@ void print(const Device& device, const ReplayResult& result, uint32_t repeat) {
   if (repeat > 0)
     std::printf("%-22s %57.1f\ntimes: median of %u %s after a first one, which compiles shaders\n", "all",
                 sum, repeat, repeat == 1 ? "frame" : "frames");
+  if (const Statistics& s = result.statistics; s.lists)
+    std::printf("blocks with material: %llu of %llu\n", static_cast<unsigned long long>(s.blocks.run),
+                static_cast<unsigned long long>(s.blocks.most));
   for (uint32_t i = 0; i < result.plan.skipCount; ++i)
     std::printf("skipped: %u x %s (%s)\n", result.plan.skips[i].count, result.plan.skips[i].what,
                 result.plan.skips[i].reason);
@@ -119,38 +93,20 @@ void writeTriptych(const Options& options, const Capture& capture,
 }
 
 bool wantsPng(const Options& options, const ReplaySettings& settings) {
-  return options.png || settings.debugView != PELLUCID_DEBUG_NONE || options.settings.showsBlocks();
-}
-
-// A frame on the device, and its blocks where they are shown.
-struct Replayed {
-  ReplayResult result;
-  std::optional<BlockMap> blocks;
-};
-
-// `run`: of a Replayer or a sequence, with the look at the frame that it records.
-template <class Run>
-Replayed runFrame(const Options& options, const Run& run) {
-  Replayed frame;
-  frame.result = run([&](const FrameRun& recorded) {
-    if (options.settings.showsBlocks()) frame.blocks = readBlockMap(recorded);
-  });
-  return frame;
+  return options.png || settings.debugView != PELLUCID_DEBUG_NONE;
 }
 
 // The PNG comes first: a frame whose EXR is there is finished.
 void writeFrame(const Options& options, const std::filesystem::path& output, const Capture& capture,
-                const Device& device, const Replayed& frame, const Image& image, bool png, float exposure) {
+                const Device& device, const PellucidPlan& plan, const Image& image, bool png, float exposure) {
   if (png)
     writeWhole(std::filesystem::path(output).replace_extension(".png"), [&](const auto& file) {
-      std::vector<std::uint8_t> picture = toSrgb(image, exposure);
-      if (frame.blocks) drawBlockMap(*frame.blocks, image.width, image.height, picture);
-      writePng(file, image.width, image.height, picture);
+      writePng(file, image.width, image.height, toSrgb(image, exposure));
     });
   ExrPart part;
   part.attributes = {{"pellucid.device", device.description()},
                      {"pellucid.capture", capture.name},
-                     {"pellucid.plan", planJson(frame.result.plan)},
+                     {"pellucid.plan", planJson(plan)},
                      {kSettingsAttribute, options.settings.text()},
                      {kDebugAttribute, options.settings.debug}};
   const char* const names[] = {"R", "G", "B"};
@@ -167,24 +123,20 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   Device device({options.device, false});
   Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
-  const Replayed frame = runFrame(
-      options, [&](const auto& look) { return replayer.run(capture, materials, settings, repeat, look); });
-  const ReplayResult& result = frame.result;
+  const ReplayResult result = replayer.run(capture, materials, settings, repeat);
   print(device, result, repeat);
   if (result.preExposure != 1)
     std::printf(
         "preExposure %g: the largest light is %g, and halves hold at most 65504; the result is free of the "
         "factor\n",
         static_cast<double>(result.preExposure), largestLight(capture));
-  if (options.stats) std::printf("\n%s", statisticsText(result.plan, result.statistics).c_str());
-  if (frame.blocks) std::printf("\n%s", blockLegend(*frame.blocks).c_str());
 
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
   const Image image = rgb(result.output);
   const float exposure = options.exposure > 0 ? options.exposure : autoExposure(image);
   const bool png = wantsPng(options, settings);
-  writeFrame(options, output, capture, device, frame, image, png, exposure);
+  writeFrame(options, output, capture, device, result.plan, image, png, exposure);
   std::printf("wrote %s\n", output.string().c_str());
   if (png)
     std::printf("wrote %s (exposure %g)\n",
@@ -250,12 +202,10 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
         warnings.insert("captures without the buffer \"motion\": all that they show counts as still");
     });
     std::unique_lock lock(deviceMutex);
-    const Replayed replayed = runFrame(options, [&](const auto& look) {
-      return keepsHistory ? sequence.run(capture, materials, settings, look)
-                          : replayer.run(capture, materials, settings, 0, look);
-    });
+    const ReplayResult replayed = keepsHistory ? sequence.run(capture, materials, settings)
+                                               : replayer.run(capture, materials, settings);
     lock.unlock();
-    writeFrame(options, output(frame), capture, device, replayed, rgb(replayed.result.output),
+    writeFrame(options, output(frame), capture, device, replayed.plan, rgb(replayed.output),
                wantsPng(options, settings), options.exposure);
   };
   const auto tryFrame = [&](int frame) {
@@ -312,7 +262,6 @@ void replay(const Options& options) {
   }
   if (!options.triptych.empty()) throw UsageError("--triptych shows one capture, not a sequence");
   if (options.repeat) throw UsageError("--repeat times one capture, not a sequence");
-  if (options.stats) throw UsageError("--stats is of one capture, not a sequence");
   if (options.output.empty()) throw UsageError("a sequence: -o with #### is required");
   if (wantsPng(options, settings) && !(options.exposure > 0))
     throw UsageError("a sequence: PNGs need --exposure, one for the whole");
@@ -340,12 +289,10 @@ void addReplayCommand(const Command& app) {
               "frames that are timed, after a first one that compiles shaders: the median is printed; 0: "
               "no times; default: 3, not of a sequence")
       .range(0, 1000);
-  command.flag("--stats", options->stats, "print what the device decided: groups run, blocks with material");
   command.flag("--png", options->png, "also write a PNG beside the EXR (--debug always does)");
   command.option("--triptych", options->triptych, "write a PNG of before | translucency | after");
   command.option("--exposure", options->exposure, "factor for PNGs; default: from the picture").positive();
   command.option("--device", options->device, "part of the Vulkan device's name; default: the fastest kind");
-  options->settings.blocks = true;
   options->settings.addTo(command);
   command.run([options] { replay(*options); });
 }

@@ -62,8 +62,7 @@ void SettingsOptions::addTo(const Command& command) {
   command.option("--mode", mode, "physical (default) or thesis: Whelan 2009's; --set changes either");
   command.option("--set", set, help);
   command.option("--debug", debug,
-                 std::string("write an intermediate: thickness (mm), transmittance, occlusion, irradiance") +
-                     (blocks ? "; blocks: the result, and a PNG of it under the blocks by what ran" : ""));
+                 "write an intermediate: thickness (mm), transmittance, occlusion, irradiance");
 }
 
 ReplaySettings SettingsOptions::parse() const {
@@ -74,11 +73,10 @@ ReplaySettings SettingsOptions::parse() const {
   else if (mode != "physical")
     throw UsageError("--mode: \"" + mode + "\" is not one of physical, thesis");
   settings.preExposure = 0;  // captures of physical units are brighter than halves hold
-  if (!debug.empty() && !showsBlocks()) {
+  if (!debug.empty()) {
     const auto found = std::find(kDebugViews.begin(), kDebugViews.end(), debug);
     if (found == kDebugViews.end())
-      throw UsageError("--debug: \"" + debug + "\" is not one of " + (blocks ? "blocks, " : "") +
-                       "irradiance, occlusion, thickness, transmittance");
+      throw UsageError("--debug: \"" + debug + "\" is not one of irradiance, occlusion, thickness, transmittance");
     settings.debugView = static_cast<PellucidDebugView>(found - kDebugViews.begin());
   }
   for (const std::string& assignment : assignments()) {

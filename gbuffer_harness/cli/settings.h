@@ -15,9 +15,6 @@ struct SettingsOptions {
   std::vector<std::string> set;  // key=value or @FILE
   std::string debug;
   std::string mode = "physical";
-  bool blocks = false;  // --debug takes "blocks", too, which is no view of the module
-
-  bool showsBlocks() const { return blocks && debug == "blocks"; }
 
   void addTo(const Command& command);
 

@@ -75,7 +75,7 @@ namespace {
 // Statistics of the difference less its mean over the 5x5 pixels around, where all of these are of one
 // surface and of `both`, over `base`, of whose pixels `mask` counts.
 Flicker measureUneven(const Image& before, const Image& after, const Surfaces& surfaces, const Mask& both,
-                      const Image& base, const Mask& mask, Image* difference = nullptr) {
+                      const Image& base, const Mask& mask) {
   constexpr int kSide = 2 * kSurroundings + 1;
   Image d(base.width, base.height, 3);
   Mask differences(mask.size());
@@ -90,7 +90,6 @@ Flicker measureUneven(const Image& before, const Image& after, const Surfaces& s
         d.at(x, y)[c] = static_cast<float>(static_cast<double>(after.at(x, y)[c]) - before.at(x, y)[c] -
                                            (means.a[c] - means.b[c]));
     }
-  if (difference) *difference = d;
   return measure(base, d, mask, differences);
 }
 
@@ -136,7 +135,7 @@ std::optional<std::array<double, 3>> Reprojection::read(const Image& image, int 
   return sum;
 }
 
-Flicker Reprojection::compare(const Image& earlier, const Image& later, Image* difference) const {
+Flicker Reprojection::compare(const Image& earlier, const Image& later) const {
   const Mask mask = comparisonMask(later_.material, later_.irradiance, Subset::All);
   requireImage("later frame", later, later_.width, later_.height, mask);
   requireImage("earlier frame", earlier, earlier_.width, earlier_.height,
@@ -151,11 +150,10 @@ Flicker Reprojection::compare(const Image& earlier, const Image& later, Image* d
       for (std::size_t c = 0; c < 3; ++c) before.at(x, y)[c] = static_cast<float>((*value)[c]);
       seen[pixelIndex(before, x, y)] = 1;
     }
-  return measureUneven(before, later, laterSurfaces_, seen, later, mask, difference);
+  return measureUneven(before, later, laterSurfaces_, seen, later, mask);
 }
 
-std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Render& render,
-                                       Image* difference) {
+std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Render& render) {
   std::optional<Reprojection> reprojection;
   if (last_) {
     reprojection.emplace(*last_, capture);
@@ -164,7 +162,7 @@ std::vector<Flicker> PathFlicker::next(Capture capture, bool switches, const Ren
   std::vector<Image> images = render(capture);
   std::vector<Flicker> flicker;
   for (std::size_t i = 0; i < images.size() && reprojection && !switches; ++i)
-    flicker.push_back(reprojection->compare(images_[i], images[i], i == 0 ? difference : nullptr));
+    flicker.push_back(reprojection->compare(images_[i], images[i]));
   images_ = std::move(images);
   last_ = std::move(capture);
   return flicker;

@@ -49,9 +49,8 @@ public:
   // surface, read between pixels, less its mean over the 5x5 pixels around it, since diffused light changes
   // evenly. Left out are places that the earlier frame does not show, and pixels whose surroundings of 5x5
   // pixels, or of 2x2 in the earlier frame, are not wholly of one surface. Statistics are over the later
-  // frame. `difference`: gets d, 0 where it is left out. Throws InputError when an image has not its
-  // capture's size with three channels.
-  Flicker compare(const Image& earlier, const Image& later, Image* difference = nullptr) const;
+  // frame. Throws InputError when an image has not its capture's size with three channels.
+  Flicker compare(const Image& earlier, const Image& later) const;
 
 private:
   std::optional<std::array<double, 3>> read(const Image& image, int x, int y) const;
@@ -68,10 +67,7 @@ public:
 
   // Gives the capture its motion, renders its images, and compares each with the image of the frame before.
   // `switches`: a light goes on or off before this frame. Empty for the first frame and where lights switch.
-  // `difference`: gets the first image's, as Reprojection::compare() gives it.
-  std::vector<Flicker> next(Capture capture, bool switches, const Render& render,
-                            Image* difference = nullptr);
-  const std::vector<Image>& images() const { return images_; }  // of the last frame
+  std::vector<Flicker> next(Capture capture, bool switches, const Render& render);
 
 private:
   std::optional<Capture> last_;

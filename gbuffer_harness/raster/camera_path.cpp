@@ -1,11 +1,8 @@
 #include "raster/camera_path.h"
 
-#include <algorithm>
 #include <glm/glm.hpp>
-#include <iterator>
 #include <numbers>
 
-#include "common/error.h"
 #include "raster/framing.h"
 #include "scene/turn.h"
 #include "scene/vector.h"
@@ -29,18 +26,8 @@ Matrix movedAway(const Matrix& viewFromWorld, const Vector3& center, double part
 
 }  // namespace
 
-std::string pathSyntax() {
-  std::string text = kPaths[0];
-  for (std::size_t i = 1; i < std::size(kPaths); ++i) text += (i + 1 < std::size(kPaths) ? ", " : " or ") + std::string(kPaths[i]);
-  return text;
-}
-
 CameraPath::CameraPath(const std::string& name, const Model& model, const ModelCamera& camera)
     : name_(name), still_{camera, model.lights, false}, center_(boundsOf(model).center) {
-  if (std::find(std::begin(kPaths), std::end(kPaths), name) == std::end(kPaths))
-    throw UsageError("--path: \"" + name + "\" is not " + pathSyntax());
-  if (model.lights.empty() && (name == "lights" || name == "blink"))
-    throw UsageError("--path " + name + ": the scene has no lights");
   // Whatever the camera does, the model stays between its planes.
   still_.camera.range.nearPlane *= 0.5;
   still_.camera.range.farPlane *= 2;

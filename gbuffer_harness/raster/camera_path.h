@@ -15,8 +15,6 @@ inline constexpr double kPathDegrees = 0.5, kPathDolly = 0.01;
 inline constexpr int kBlinkFrames = 6;
 
 inline constexpr const char* kPaths[] = {"pan", "dolly", "orbit", "head", "lights", "blink"};
-// The names as a sentence lists them.
-std::string pathSyntax();
 
 class CameraPath {
 public:
@@ -26,8 +24,7 @@ public:
     bool switches;  // a light goes on or off before this frame: it cannot look like the frame before
   };
 
-  // A path of the model as the camera sees it in frame 0. Throws UsageError, which names --path, for an unknown one, and
-  // for one whose model lacks lights.
+  // name: one of kPaths, of the model as the camera sees it in frame 0.
   CameraPath(const std::string& name, const Model& model, const ModelCamera& camera);
 
   Pose at(int frame) const;

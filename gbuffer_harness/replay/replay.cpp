@@ -98,17 +98,6 @@ public:
   void uploadOutput(const Image& content) const { output_->upload(content); }
   const GpuImage& output() const { return *output_; }
   Image irradiance() const { return inputs_->irradiance().download(); }
-  // Words are in the transient of whole numbers of 32 bits.
-  std::vector<std::uint32_t> blockWords() const {
-    for (const GpuImage* image : transients_) {
-      if (image->format() != VK_FORMAT_R32_UINT) continue;
-      const Image bits = image->download();
-      std::vector<std::uint32_t> words(bits.data.size());
-      std::memcpy(words.data(), bits.data.data(), words.size() * sizeof words[0]);
-      return words;
-    }
-    return {};
-  }
   void restoreIrradiance(const Capture& capture) const {
     if (outputIsIrradiance_) inputs_->irradiance().upload(exposed(capture.irradiance));
   }
@@ -276,8 +265,6 @@ void FrameRun::record(VkCommandBuffer commandBuffer, uint32_t dispatch) const {
 
 const void* FrameRun::constants() const { return constants_->mapped(); }
 
-std::vector<std::uint32_t> FrameRun::blockWords() const { return images_->blockWords(); }
-
 Image FrameRun::output() const { return images_->output().download(); }
 
 Image FrameRun::output(const VkRect2D& rect) const { return images_->output().download(rect); }
@@ -307,8 +294,7 @@ ReplaySettings chosen(const ReplaySettings& given, const Capture& capture) {
 }
 
 // `given`: the user's settings.
-ReplayResult recorded(Device& device, const FrameRun& run, const ReplaySettings& given,
-                      const std::function<void(const FrameRun&)>& look) {
+ReplayResult recorded(Device& device, const FrameRun& run, const ReplaySettings& given) {
   ReplayResult result;
   result.plan = run.plan();
   result.preExposure = run.frame().preExposure;
@@ -318,32 +304,29 @@ ReplayResult recorded(Device& device, const FrameRun& run, const ReplaySettings&
       given.debugView == PELLUCID_DEBUG_NONE || given.debugView == PELLUCID_DEBUG_IRRADIANCE;
   if (given.preExposure == 0 && holdsLight) scaleColors(result.output, 1 / result.preExposure);
   result.statistics = run.statistics();
-  if (look) look(run);
   return result;
 }
 
 }  // namespace
 
 ReplayResult ReplaySequence::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                                 const ReplaySettings& settings,
-                                 const std::function<void(const FrameRun&)>& look) {
+                                 const ReplaySettings& settings) {
   if (last_ && (last_->frame().imageExtent[0] != static_cast<uint32_t>(capture.width) ||
                 last_->frame().imageExtent[1] != static_cast<uint32_t>(capture.height)))
     cut();
   last_ = std::make_unique<FrameRun>(device_, contexts_.of(capture), capture, materials,
                                      chosen(settings, capture), last_.get());
-  return recorded(device_, *last_, settings, look);
+  return recorded(device_, *last_, settings);
 }
 
 ReplayResult Replayer::run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                           const ReplaySettings& settings, uint32_t timedFrames,
-                           const std::function<void(const FrameRun&)>& look) {
+                           const ReplaySettings& settings, uint32_t timedFrames) {
   const FrameRun run(device_, contextFor(capture), capture, materials, chosen(settings, capture));
-  if (timedFrames == 0) return recorded(device_, run, settings, look);
+  if (timedFrames == 0) return recorded(device_, run, settings);
   ReplayResult result;
   {
     const ProgressLine progress("rendering a first frame, in which the driver may compile shaders, too");
-    result = recorded(device_, run, settings, look);
+    result = recorded(device_, run, settings);
   }
 
   const uint32_t count = result.plan.dispatchCount;

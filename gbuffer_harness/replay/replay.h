@@ -76,8 +76,6 @@ public:
   const std::string& name() const { return name_; }  // of the capture
   // The statistics of the last recording, which is finished.
   Statistics statistics() const { return readStatistics(*plan_, constants()); }
-  // The words of that recording's blocks (compute/frame/blocks.glsl); none in plans without lists.
-  std::vector<std::uint32_t> blockWords() const;
 
   void record(VkCommandBuffer commandBuffer) const;  // the whole plan
   // The whole plans of several runs of one context, side by side.
@@ -142,7 +140,7 @@ public:
 
   // As Replayer::run(), without times. After a frame of another size the history begins anew.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                   const ReplaySettings& settings, const std::function<void(const FrameRun&)>& look = {});
+                   const ReplaySettings& settings);
   // The next frame begins anew, as after a cut.
   void cut() { last_.reset(); }
 
@@ -159,11 +157,9 @@ public:
   const Context& contextFor(const Capture& capture) { return contexts_.of(capture); }
 
   // `timedFrames`: recordings of the frame after the one that makes the output, in which drivers may still
-  // compile shaders. Times are medians of their GPU timestamps, microseconds. `look` sees that first
-  // recording when the device has finished it.
+  // compile shaders. Times are medians of their GPU timestamps, microseconds.
   ReplayResult run(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                   const ReplaySettings& settings, uint32_t timedFrames = 0,
-                   const std::function<void(const FrameRun&)>& look = {});
+                   const ReplaySettings& settings, uint32_t timedFrames = 0);
 
 private:
   Device& device_;

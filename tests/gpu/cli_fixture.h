@@ -32,12 +32,6 @@ inline Outcome run(const std::string& arguments, const std::string& before = "")
   return outcome;
 }
 
-// What `pellucid flicker --json` measured, among the other lines.
-inline nlohmann::json changesOf(const Outcome& outcome) {
-  const size_t begin = outcome.text.find("{\n"), end = outcome.text.rfind("}\n");
-  return nlohmann::json::parse(outcome.text.substr(begin, end + 1 - begin))["changes"];
-}
-
 class Cli : public testing::Test {
 protected:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }

@@ -40,27 +40,4 @@ TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
   expect(0, ball + " --set radius=1.5", "is less than 4 transport mean free paths, which are ");
 }
 
-// A triangle that nothing but the camera moves: its light stays where it is on the surface.
-TEST_F(GltfCommand, FlickerFollowsPaths) {
-  const std::string flicker = "flicker " + write("t.glb", triangle()) +
-                              " --size 96x96 --shadow-size 64 --unit cm --material wax=skin1 --light back --pixels 1 ";
-  const Outcome outcome = run(flicker + "--path orbit --frames 3 --json --picture " + path("f.png"));
-  EXPECT_EQ(outcome.code, 0) << outcome.text;
-  const auto changes = changesOf(outcome);
-  int paths = 0;
-  for (const auto& change : changes) {
-    if (!change.contains("steps")) continue;
-    ++paths;
-    EXPECT_EQ(change["steps"].size(), 2u) << change;
-    EXPECT_GT(change["pixels"], 1000) << change;
-    EXPECT_LT(change["rel_rmse"][0], 0.02) << change;
-  }
-  EXPECT_EQ(paths, 2);
-  // Two frames of 96 pixels with gaps of 4 pixels, and the changes below: width and height of the PNG's
-  // header.
-  EXPECT_EQ(bytes("f.png").substr(16, 8), std::string("\0\0\0\xc4\0\0\0\xc0", 8));
-  expect(2, flicker + "--path orbit,pan --picture x.png", "--picture: shows one path");
-  expect(2, flicker + "--path walk", "--path: \"walk\" is not pan, dolly, orbit, head, lights or blink");
-}
-
 }  // namespace
