@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
@@ -137,7 +138,8 @@ struct Capture {
   std::vector<MaterialSource> materials;
   std::optional<Truth> truth;
 
-  std::vector<std::string> warnings;  // sentences for a person: what its files say and no capture holds
+  std::vector<std::string> warnings;         // sentences for a person: what its files say and no capture holds
+  std::vector<std::filesystem::path> files;  // that it was read from
 };
 
 }  // namespace pellucid::harness

@@ -271,6 +271,25 @@ std::string ExrFile::channelFormat(int part, const std::string& channel) const {
   return formatName(found->type);
 }
 
+std::string ExrFile::lossyCompression(int part, const std::string& channel) const {
+  const Imf::Compression compression = impl_->file->header(part).compression();
+  const bool isHalf = channelFormat(part, channel) == "half";
+  const std::string suffix = channel.substr(channel.rfind('.') + 1);
+  // OpenEXR's technical introduction: DWA quantizes channels of these names, B44 half floats, and keeps all others.
+  static const std::set<std::string> kColors = {"R", "G", "B", "Y", "RY", "BY", "r", "g", "b", "y", "ry", "by"};
+  switch (compression) {
+    case Imf::DWAA_COMPRESSION:
+      return kColors.contains(suffix) ? "DWAA" : "";
+    case Imf::DWAB_COMPRESSION:
+      return kColors.contains(suffix) ? "DWAB" : "";
+    case Imf::B44_COMPRESSION:
+    case Imf::B44A_COMPRESSION:
+      return isHalf ? "B44" : "";
+    default:
+      return "";
+  }
+}
+
 std::optional<std::string> ExrFile::findText(const std::string& attribute) const {
   for (int part = 0; part < partCount(); ++part) {
     const auto* found = impl_->file->header(part).findTypedAttribute<Imf::StringAttribute>(attribute);

@@ -15,7 +15,9 @@ namespace pellucid::harness {
 nlohmann::json parseJson(const std::string& file, const std::string& text) {
   // The library keeps the last of two equal keys; a manifest that says a thing twice is wrong.
   std::vector<std::set<std::string>> open;
-  const auto refuseTwins = [&](int, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+  constexpr int kMostLevels = 100;  // what writes a value to text calls itself for each
+  const auto refuseTwins = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& parsed) {
+    if (depth > kMostLevels) throw InputError(file, "", "its JSON is nested deeper than " + std::to_string(kMostLevels) + " levels");
     if (event == nlohmann::json::parse_event_t::object_start) open.emplace_back();
     if (event == nlohmann::json::parse_event_t::object_end) open.pop_back();
     if (event == nlohmann::json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second)

@@ -15,7 +15,7 @@
 
 namespace pellucid::harness {
 
-// Parses JSON text. Throws InputError for syntax errors and for a key that stands twice in one object.
+// Parses JSON text. Throws InputError for syntax errors, for a key that stands twice in one object, and for more than 100 levels.
 nlohmann::json parseJson(const std::string& file, const std::string& text);
 // Parses a JSON file. Throws InputError as parseJson() does, and for a file that cannot be read.
 nlohmann::json readJson(const std::filesystem::path& path);

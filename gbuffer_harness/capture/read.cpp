@@ -68,6 +68,9 @@ public:
       const ExrFile& file = open(source.file, source.field + ".file");
       const int part = file.findPart(source.channels, source.part, source.field);
       request.isHalf = file.channelFormat(part, source.channels.front()) == "half";
+      if (const std::string lossy = file.lossyCompression(part, source.channels.front()); !lossy.empty() && request.image->channels == 1)
+        warnings.push_back(source.field + ": " + lossy + " compression changes the channel \"" + source.channels.front() +
+                           "\", as it does colors; write depths and ids with ZIP");
       const std::string view = request.screen ? file.viewOf(part, source.channels.front()) : "";
       if (!view.empty() && ofView && view != firstView)
         throw InputError(source.file.string(), source.field,
@@ -119,6 +122,12 @@ public:
       scale(request);
       if (request.isHalf && request.depth) warnOfHalves(request, warnings);
     }
+  }
+
+  std::vector<std::filesystem::path> files() const {
+    std::vector<std::filesystem::path> paths = {manifest_.path};
+    for (const auto& [path, file] : files_) paths.push_back(path);
+    return paths;
   }
 
 private:
@@ -276,12 +285,18 @@ void multiply(Image& image, const Image& times) {
 
 // The light on a black surface is not known. A pixel without a material needs none.
 void divideByAlbedo(const Manifest& manifest, Capture& capture) {
+  // A black surface that rounding made nearly black becomes a lamp.
+  constexpr float kMostTimes = 100;
+  const float largest = *std::max_element(capture.irradiance.data.begin(), capture.irradiance.data.end(),
+                                          [](float a, float b) { return !(a >= b) && b < kLeastNoDepth; });
+  std::size_t bright = 0;
   for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i) {
     float& light = capture.irradiance.data[i];
     const float albedo = capture.albedo.data[i];
     const std::size_t pixel = i / 3, width = static_cast<std::size_t>(capture.width);
     if (albedo > 0) {
       light /= albedo;
+      bright += capture.material[pixel] != 0 && light > kMostTimes * largest;
     } else if (capture.material[pixel] == 0 || !holdsSurface(capture.frontDepth, pixel)) {
       light = 0;
     } else {
@@ -291,6 +306,9 @@ void divideByAlbedo(const Manifest& manifest, Capture& capture) {
       throw InputError(manifest.path.string(), manifest.irradiance.field + ".includesAlbedo", sentence.str());
     }
   }
+  if (bright > 0)
+    capture.warnings.push_back(manifest.irradiance.field + ".includesAlbedo: " + std::to_string(bright) +
+                               " values are over 100 times the largest stored one, as their albedo is next to 0; raise the albedo there");
 }
 
 // Planar distance of a stored depth.
@@ -347,6 +365,7 @@ Capture readImages(const Manifest& manifest) {
         loader.wantBeside(depth, *sources.casterMaterial, casters.emplace_back(), kOutside, false);
     }
   loader.load(capture.width, capture.height, capture.warnings);
+  capture.files = loader.files();
   requirePositive(manifest.frontDepth, capture.frontDepth);
   if (manifest.backDepth) requirePositive(*manifest.backDepth, capture.backDepth);
   for (std::size_t i = 0; i < capture.lights.size(); ++i)

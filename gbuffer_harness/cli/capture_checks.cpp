@@ -8,9 +8,11 @@
 #include <limits>
 #include <optional>
 
+#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "common/error.h"
 #include "reference/camera.h"
+#include "replay/frame.h"
 
 namespace pellucid::harness {
 
@@ -123,6 +125,66 @@ std::optional<std::array<double, 3>> transportMeanFreePath(const MaterialSource&
   return lengths;
 }
 
+// Collects "COUNT of TOTAL sentence".
+class Warnings {
+public:
+  explicit Warnings(std::vector<std::string>& sentences) : sentences_(sentences) {}
+  void count(std::size_t count, std::size_t total, const std::string& sentence) {
+    if (count > 0)
+      sentences_.push_back(std::to_string(count) + " of " + std::to_string(total) + " " + sentence);
+  }
+
+private:
+  std::vector<std::string>& sentences_;
+};
+
+void checkPixels(const Capture& capture, const reference::Camera& camera, std::vector<std::string>& sentences) {
+  const bool hasBack = !capture.backDepth.image.empty();
+  std::size_t total = 0, noFront = 0, noBack = 0, noThickness = 0, reversed = 0, badIrradiance = 0,
+              badHidden = 0, badAlbedo = 0;
+  for (int y = 0; y < capture.height; ++y) {
+    for (int x = 0; x < capture.width; ++x) {
+      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
+                           static_cast<std::size_t>(x)] == 0)
+        continue;
+      ++total;
+      const float* light = capture.irradiance.at(x, y);
+      const auto isLight = [](float v) { return v >= 0 && std::isfinite(v); };
+      badIrradiance += !std::all_of(light, light + 3, isLight);
+      if (!capture.hiddenIrradiance.empty()) {
+        const float* hidden = capture.hiddenIrradiance.at(x, y);
+        badHidden += !std::all_of(hidden, hidden + 3, isLight);
+      }
+      if (!capture.albedo.empty()) {
+        const float* albedo = capture.albedo.at(x, y);
+        badAlbedo += !std::all_of(albedo, albedo + 3, [](float v) { return v >= 0 && v <= 1; });
+      }
+      const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
+      noFront += !front;
+      if (hasBack) {
+        const float stored = *capture.backDepth.image.at(x, y);
+        if (capture.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) {
+          noThickness += !holdsThickness(stored);
+          continue;
+        }
+        const auto back = camera.planarDepth(stored, capture.backDepth.encoding);
+        noBack += !back;
+        constexpr double kRounding = 1e-5;  // both depths may be floats that went through a matrix
+        reversed += front && back && *back < *front * (1 - kRounding);
+      }
+    }
+  }
+  Warnings warnings(sentences);
+  if (total == 0) sentences.push_back("no pixel has a material: the output is the irradiance");
+  warnings.count(noFront, total, "material pixels have no front depth");
+  warnings.count(noBack, total, "material pixels have no back depth");
+  warnings.count(noThickness, total, "material pixels have no thickness from 0 on: they count as thick");
+  warnings.count(reversed, total, "material pixels have their back depth in front of the front depth");
+  warnings.count(badIrradiance, total, "material pixels have an irradiance that is negative or not finite");
+  warnings.count(badHidden, total, "material pixels have a hiddenIrradiance that is negative or not finite");
+  warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");
+}
+
 }  // namespace
 
 std::vector<std::string> thinBodies(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
@@ -150,6 +212,28 @@ std::vector<std::string> thinBodies(const Capture& capture, const std::vector<Pe
         i, size, kFewestPaths, (*lengths)[c], "RGB"[c]);
     sentences.emplace_back(sentence);
   }
+  return sentences;
+}
+
+std::vector<std::string> findingsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials, PellucidSeverity severity) {
+  FrameData data;
+  makeFrame(capture, materials, {}, data);
+  std::pair<PellucidSeverity, std::vector<std::string>> found{severity, {}};
+  pellucidValidateFrame(
+      &data.frame,
+      [](void* user, PellucidSeverity of, const char* field, const char* message) {
+        auto& [wanted, sentences] = *static_cast<std::pair<PellucidSeverity, std::vector<std::string>>*>(user);
+        if (of == wanted) sentences.push_back(std::string(field) + " " + message);
+      },
+      &found);
+  return found.second;
+}
+
+std::vector<std::string> warningsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
+  std::vector<std::string> sentences = capture.warnings;
+  checkPixels(capture, reference::Camera(capture.clipFromView, capture.width, capture.height), sentences);
+  for (const auto& more : {findingsOf(capture, materials, PELLUCID_SEVERITY_WARNING), strangeMaps(capture), coarseTables(capture), thinBodies(capture, materials)})
+    sentences.insert(sentences.end(), more.begin(), more.end());
   return sentences;
 }
 

@@ -18,4 +18,11 @@ std::vector<std::string> thinBodies(const Capture& capture, const std::vector<Pe
 // A sentence for each light whose shadow maps contradict the G-buffer.
 std::vector<std::string> strangeMaps(const Capture& capture);
 
+// The module's sentences of a severity about the frame that a replay without options records.
+std::vector<std::string> findingsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials, PellucidSeverity severity);
+
+// All warnings: those of the capture's files, of the module about the frame that a replay without options records, of pixels, maps,
+// tables and bodies.
+std::vector<std::string> warningsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials);
+
 }  // namespace pellucid::harness

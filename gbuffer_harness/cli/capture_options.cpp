@@ -64,11 +64,14 @@ ModelCamera chooseCamera(const CaptureOptions& options, const Model& model, cons
                       turns);
   }
   std::string names = "auto";
+  std::vector<ModelCamera> found;
   for (const ModelCamera& camera : cameras) {
-    if (camera.name == wanted) return camera;
-    names += ", " + camera.name;
+    if (camera.name == wanted || camera.node == wanted) found.push_back(camera);
+    names += ", " + camera.name + (camera.node.empty() || camera.node == camera.name ? "" : " (node " + camera.node + ")");
   }
-  throw UsageError("--camera: there is no \"" + wanted + "\" but " + names);
+  if (found.size() == 1) return found.front();
+  if (found.empty()) throw UsageError("--camera: there is no \"" + wanted + "\" but " + names);
+  throw UsageError("--camera: " + std::to_string(found.size()) + " cameras are called \"" + wanted + "\"; name a node: " + names);
 }
 
 void refuseOptionsOf(const Command& command, const char* group, const char* needs) {

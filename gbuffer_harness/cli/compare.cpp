@@ -173,7 +173,7 @@ void compare(const Options& options) {
   }
   if (!truthB.standardError.empty()) result.noise = relativeNoise(b, truthB.standardError, mask, options.box);
   result.eye = measureEye(a, b, mask, capture ? &*capture : nullptr);
-  std::cout << (options.json ? toJson(result, options).dump(2) + "\n" : toText(result, options));
+  std::cout << (options.json ? toJson(result, options).dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : toText(result, options));
   if (!options.ratio.empty()) writePng(options.ratio, b.width, b.height, ratioMap(a, b, mask));
   checkLimits(result, limits);
 }

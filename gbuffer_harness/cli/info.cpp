@@ -179,74 +179,6 @@ std::vector<std::string> missingParts(const Capture& capture,
   return missing;
 }
 
-// Collects "COUNT of TOTAL sentence".
-class Warnings {
-public:
-  explicit Warnings(std::vector<std::string>& sentences) : sentences_(sentences) {}
-  void count(std::size_t count, std::size_t total, const std::string& sentence) {
-    if (count > 0)
-      sentences_.push_back(std::to_string(count) + " of " + std::to_string(total) + " " + sentence);
-  }
-
-private:
-  std::vector<std::string>& sentences_;
-};
-
-void checkPixels(const Capture& capture, const Camera& camera, std::vector<std::string>& sentences) {
-  const bool hasBack = !capture.backDepth.image.empty();
-  std::size_t total = 0, noFront = 0, noBack = 0, noThickness = 0, reversed = 0, badIrradiance = 0,
-              badAlbedo = 0;
-  for (int y = 0; y < capture.height; ++y) {
-    for (int x = 0; x < capture.width; ++x) {
-      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) +
-                           static_cast<std::size_t>(x)] == 0)
-        continue;
-      ++total;
-      const float* light = capture.irradiance.at(x, y);
-      badIrradiance += !std::all_of(light, light + 3, [](float v) { return v >= 0 && std::isfinite(v); });
-      if (!capture.albedo.empty()) {
-        const float* albedo = capture.albedo.at(x, y);
-        badAlbedo += !std::all_of(albedo, albedo + 3, [](float v) { return v >= 0 && v <= 1; });
-      }
-      const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
-      noFront += !front;
-      if (hasBack) {
-        const float stored = *capture.backDepth.image.at(x, y);
-        if (capture.backDepth.encoding == PELLUCID_DEPTH_THICKNESS) {
-          noThickness += !holdsThickness(stored);
-          continue;
-        }
-        const auto back = camera.planarDepth(stored, capture.backDepth.encoding);
-        noBack += !back;
-        constexpr double kRounding = 1e-5;  // both depths may be floats that went through a matrix
-        reversed += front && back && *back < *front * (1 - kRounding);
-      }
-    }
-  }
-  Warnings warnings(sentences);
-  if (total == 0) sentences.push_back("no pixel has a material: the output is the irradiance");
-  warnings.count(noFront, total, "material pixels have no front depth");
-  warnings.count(noBack, total, "material pixels have no back depth");
-  warnings.count(noThickness, total, "material pixels have no thickness from 0 on: they count as thick");
-  warnings.count(reversed, total, "material pixels have their back depth in front of the front depth");
-  warnings.count(badIrradiance, total, "material pixels have an irradiance that is negative or not finite");
-  warnings.count(badAlbedo, total, "material pixels have an albedo outside 0..1");
-}
-
-// The module's own findings about the frame that a replay without options records.
-void checkConventions(const Capture& capture, const std::vector<PellucidMaterial>& materials,
-                      std::vector<std::string>& sentences) {
-  FrameData data;
-  makeFrame(capture, materials, {}, data);
-  pellucidValidateFrame(
-      &data.frame,
-      [](void* user, PellucidSeverity severity, const char* field, const char* message) {
-        const std::string prefix = severity == PELLUCID_SEVERITY_ERROR ? "cannot be replayed: " : "";
-        static_cast<std::vector<std::string>*>(user)->push_back(prefix + field + " " + message);
-      },
-      &sentences);
-}
-
 Json describe(const std::filesystem::path& path) {
   const Manifest manifest = readManifest(path);
   const Capture capture = readCapture(manifest);
@@ -283,14 +215,11 @@ Json describe(const std::filesystem::path& path) {
   if (capture.environment) json["environment"] = *capture.environment;
   json["materials"] = materialsJson(capture, materials);
   json["missing"] = missingParts(capture, materials);
-  std::vector<std::string> warnings = capture.warnings;
+  std::vector<std::string> warnings = warningsOf(capture, materials);
+  for (const std::string& sentence : findingsOf(capture, materials, PELLUCID_SEVERITY_ERROR)) warnings.push_back("cannot be replayed: " + sentence);
   if (manifest.hasNormal)
     warnings.push_back(
         "the buffer \"normal\" is not needed: surfaces come from front depth, and nothing reads normals");
-  checkConventions(capture, materials, warnings);
-  checkPixels(capture, camera, warnings);
-  for (auto& sentences : {strangeMaps(capture), coarseTables(capture), thinBodies(capture, materials)})
-    warnings.insert(warnings.end(), sentences.begin(), sentences.end());
   json["warnings"] = warnings;
   return json;
 }
@@ -309,7 +238,7 @@ std::string line(const Json& object) {
       else if (item.is_number_float())
         text << ' ' << item.get<double>();
       else
-        text << ' ' << item.dump();
+        text << ' ' << item.dump(-1, ' ', false, Json::error_handler_t::replace);
     };
     if (value.is_array())
       for (const Json& item : value) print(item);
@@ -362,7 +291,7 @@ void addInfoCommand(const Command& app) {
   command.flag("--json", options->json, "print JSON");
   command.run([options] {
     const Json json = describe(options->input);
-    std::cout << (options->json ? json.dump(2) + "\n" : toText(json));
+    std::cout << (options->json ? json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : toText(json));
   });
 }
 

@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <iostream>
 #include <new>
 
 #include "cli/command.h"
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
         "Exit codes: 0 ok, 1 comparison over its limit or stress violated, 2 usage, 3 bad input, 4 no usable "
         "device.",
         addCommands);
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout) return fail(BAD_INPUT, "standard output cannot be written: is the disk full?");
     return understood ? OK : USAGE;
   } catch (const LimitExceeded& e) {
     return fail(OVER_LIMIT, e.what());

@@ -64,7 +64,7 @@ std::string planJson(const PellucidPlan& plan, int indent) {
   for (std::uint32_t i = 0; i < plan.dispatchCount; ++i) json["dispatches"].push_back(dispatchJson(plan, i));
   for (const PellucidSkip& s : std::span(plan.skips, plan.skipCount))
     json["skips"].push_back({{"what", s.what}, {"reason", s.reason}, {"count", s.count}});
-  return json.dump(indent);
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace pellucid::harness

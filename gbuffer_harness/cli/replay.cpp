@@ -116,10 +116,11 @@ void writeFrame(const Options& options, const std::filesystem::path& output, con
 
 void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input);
+  std::filesystem::path output = options.output;
+  if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
+  requireNoInput(output, capture.files);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
-  warn(capture.warnings);
-  warn(coarseTables(capture));
-  warn(thinBodies(capture, materials));
+  warn(warningsOf(capture, materials));
   Device device({options.device, false});
   Replayer replayer(device);
   const uint32_t repeat = options.repeat.value_or(kDefaultRepeat);
@@ -131,8 +132,6 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
         "factor\n",
         static_cast<double>(result.preExposure), largestLight(capture));
 
-  std::filesystem::path output = options.output;
-  if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
   const Image image = rgb(result.output);
   const float exposure = options.exposure > 0 ? options.exposure : autoExposure(image);
   const bool png = wantsPng(options, settings);
@@ -150,16 +149,18 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
 // sequence must not change its look where it was resumed.
 bool isFinished(const Options& options, const std::filesystem::path& output) {
   if (options.overwrite || !std::filesystem::exists(output)) return false;
-  std::string settings, debug;
-  try {
-    readExrImage(output);
-    const ExrFile file(output);
-    settings = file.findText(kSettingsAttribute).value_or("");
-    debug = file.findText(kDebugAttribute).value_or("");
-  } catch (const InputError&) {
-    return false;  // damaged: made again
+  const ExrFile file(output);
+  if (!file.findText(kSettingsAttribute))
+    throw InputError(output.string(), kSettingsAttribute, "is missing: no result of this command; --overwrite replaces the file");
+  const std::string settings = *file.findText(kSettingsAttribute), debug = file.findText(kDebugAttribute).value_or("");
+  if (settings == options.settings.text() && debug == options.settings.debug) {
+    try {
+      readExrImage(output);
+      return true;
+    } catch (const InputError&) {
+      return false;  // damaged: made again
+    }
   }
-  if (settings == options.settings.text() && debug == options.settings.debug) return true;
   throw InputError(output.string(), kSettingsAttribute,
                    "made with \"" + settings + (debug.empty() ? "" : " debug=" + debug) +
                        "\" and not with these settings; --overwrite makes it again");
@@ -184,7 +185,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
   Progress progress("replaying", frames.size());
   std::mutex deviceMutex, reportMutex;
   std::map<int, std::string> failures;
-  std::set<std::string> warnings;  // frames have most in common
+  std::map<std::string, std::string> warnings;  // by the sentence without numbers: frames have most in common
   std::vector<int> missing;
   int skipped = 0;
   const auto counted = [&](const auto& change) {
@@ -195,11 +196,17 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     if (isFinished(options, output(frame))) return counted([&] { ++skipped; });
     if (!std::filesystem::exists(input(frame))) return counted([&] { missing.push_back(frame); });
     const Capture capture = readCapture(input(frame));
+    requireNoInput(output(frame), capture.files);
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
+    std::vector<std::string> sentences = warningsOf(capture, materials);
+    if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())
+      sentences.push_back("without the buffer \"motion\" all that a capture shows counts as still");
     counted([&] {
-      warnings.insert(capture.warnings.begin(), capture.warnings.end());
-      if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())
-        warnings.insert("captures without the buffer \"motion\": all that they show counts as still");
+      for (const std::string& sentence : sentences) {
+        std::string kind = sentence;
+        std::erase_if(kind, [](char c) { return c >= '0' && c <= '9'; });
+        warnings.emplace(kind, "frame " + std::to_string(frame) + ": " + sentence);
+      }
     });
     std::unique_lock lock(deviceMutex);
     const ReplayResult replayed = keepsHistory ? sequence.run(capture, materials, settings)
@@ -233,6 +240,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     parallelRows(static_cast<int>(frames.size()), options.jobs,
                  [&](int i) { tryFrame(frames[static_cast<std::size_t>(i)]); });
   }
+  for (const auto& [kind, sentence] : warnings) warn({sentence});
   const std::size_t failedCount = failures.size() + missing.size();
   std::printf("%s\n%zu frames: %zu written, %d finished before, %zu failed\n", device.description().c_str(),
               frames.size(), frames.size() - static_cast<std::size_t>(skipped) - failedCount, skipped,

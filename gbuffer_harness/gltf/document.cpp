@@ -202,10 +202,10 @@ void checkVersion(const std::string& file, const GltfJson& json) {
 // Parses `text` and throws InputError for what tinygltf would refuse without a field: JSON that is none,
 // extensions that are required and not known, and properties that are missing or of another type.
 GltfJson parseGltfJson(const std::string& file, std::string_view text) {
-  checkNesting(file, text);
   const std::size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");  // behind a mark of UTF-8
   if (first == std::string_view::npos || text[first] != '{')
     throw InputError(file, "", "is no glTF file, which begins with \"{\" or \"glTF\"; export one as .glb");
+  checkNesting(file, text);
   GltfJson json;
   try {
     json = GltfJson::parse(text);

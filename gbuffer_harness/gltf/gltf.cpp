@@ -44,7 +44,7 @@ Anchor anchorOf(const Model& model, const std::vector<glm::dvec3>& positions, co
   }
   const Anchor center{0.5 * (low + high), 0.5 * glm::length(high - low)};
   const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
-                                  [&](const ModelCamera& c) { return camera.empty() || c.name == camera; });
+                                  [&](const ModelCamera& c) { return camera.empty() || c.name == camera || c.node == camera; });
   if (found == model.cameras.end()) return center;
   const glm::dvec3 eye = glm::inverse(toGlm(found->viewFromWorld))[3];
   // An orthographic camera's near plane may lie at its eye.
@@ -365,6 +365,7 @@ void Loader::addCamera(std::size_t node, const glm::dmat4& world) {
     if (!holds) document_.fail(field + key, std::to_string(value) + " is not " + range);
   };
   ModelCamera result;
+  result.node = source.name;
   result.name = !camera.name.empty() ? camera.name : !source.name.empty() ? source.name : field;
   result.orthographic = camera.type == "orthographic";
   if (result.orthographic) {
@@ -445,6 +446,8 @@ GltfScene Loader::load() {
   checkVertices();
   for (const auto& [node, world, isShown] : placed) {
     const tinygltf::Node& source = document_.model.nodes[node];
+    if (!source.matrix.empty() && source.translation.size() + source.rotation.size() + source.scale.size() > 0)
+      scene_.warnings.push_back("nodes[" + std::to_string(node) + "].matrix: takes the place of the node's translation, rotation and scale");
     if (source.camera != -1) addCamera(node, world);
     if (!isShown) continue;
     if (source.mesh != -1) addMesh(node, world);

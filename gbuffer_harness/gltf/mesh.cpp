@@ -181,6 +181,19 @@ void repairNormals(WorldVertices& world, const std::vector<std::uint32_t>& indic
   for (const std::uint32_t i : broken) world.vertices[i].normal = unit(mean[i]);
 }
 
+// Whether most of the area has vertex normals that point to the other side than the winding does.
+bool opposesWinding(const WorldVertices& world, const std::vector<std::uint32_t>& indices) {
+  double all = 0, opposed = 0;
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    const glm::dvec3 area = areaNormal(world.positions, &indices[i]);
+    glm::dvec3 sum(0);
+    for (std::size_t k = i; k < i + 3; ++k) sum += glm::dvec3(toVec3(world.vertices[indices[k]].normal.data()));
+    all += glm::length(area);
+    if (glm::dot(area, sum) < 0) opposed += glm::length(area);
+  }
+  return opposed > 0.5 * all;
+}
+
 // The mean of the joints' matrices by the vertex's weights.
 glm::dmat4 skinned(const GltfDocument& document, const Attributes& attributes, std::size_t vertex,
                    const std::vector<glm::dmat4>& joints, const std::string& field) {
@@ -341,6 +354,9 @@ bool appendPrimitive(const GltfDocument& document, const tinygltf::Primitive& pr
     repairNormals(world, indices);
   else
     makeFlat(world, indices);
+  if (attributes.normal && opposesWinding(world, indices))
+    warnings.push_back(field + ".attributes.NORMAL: points against the winding of most triangles, whose seen faces then have no light; "
+                               "recalculate the normals, or flip the triangles");
 
   if (model.vertices.size() + world.vertices.size() > kMaxVertices ||
       model.indices.size() + indices.size() > kMaxIndices)

@@ -74,7 +74,7 @@ struct Part {
 };
 
 struct ModelCamera {
-  std::string name;
+  std::string name, node;            // of the camera, or the node's if it has none; of the node
   Matrix viewFromWorld = kIdentity;  // rigid, -z forward
   bool orthographic = false;
   double verticalFov = 0.5;  // radians; perspective
