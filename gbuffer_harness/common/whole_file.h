@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "common/error.h"
 
@@ -48,6 +49,14 @@ void writeWhole(const std::filesystem::path& path, const Write& write) {
   const std::string reason = error.message();
   std::filesystem::remove(temporary, error);
   throw InputError(path.string(), "", "cannot be written: " + reason);
+}
+
+// Throws UsageError when `output` is one of the files that a command reads, also by another path or a link.
+inline void requireNoInput(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
+  std::error_code error;  // of a file that is not there: it is no other's
+  for (const std::filesystem::path& input : inputs)
+    if (std::filesystem::equivalent(output, input, error))
+      throw UsageError("-o " + output.string() + ": is an input of this command, which would be lost; name another file");
 }
 
 // writeWhole() of a text; a full disk is an InputError, too.
