@@ -22,6 +22,7 @@ struct Options {
   std::string output = "capture.json", unit, depth, eye, target, up;
   InitWords words;
   std::map<Role, std::string> roles;
+  bool overwrite = false;
 };
 
 Json lightOf(const std::string& text) {
@@ -49,8 +50,17 @@ InitWords wordsOf(const Options& options) {
   return words;
 }
 
+// What is there may hold a person's edits: the manifest itself asks for them.
+void requireFree(const std::filesystem::path& output, const Options& options) {
+  requireNoInput(output, {options.files.begin(), options.files.end()});
+  std::error_code error;
+  if (!options.overwrite && std::filesystem::is_regular_file(output, error))
+    throw UsageError("-o " + output.string() + ": is there; --overwrite replaces it, or -o names another file");
+}
+
 void init(const Options& options) {
   const std::filesystem::path output = options.output;
+  requireFree(output, options);
   const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   const GuessedManifest guessed = guessManifest(files, folder, wordsOf(options));
@@ -75,6 +85,7 @@ void addInitCommand(const Command& app) {
   command.option("files", options->files, "EXR files of one frame: layers of one, or a file for each buffer")
       .required();
   command.option("-o,--output", options->output, "manifest to write");
+  command.flag("--overwrite", options->overwrite, "replace a manifest that is there");
   InitWords& words = options->words;
   CameraWords& camera = words.camera;
   const Command cameras = command.group("Camera");
@@ -89,7 +100,7 @@ void addInitCommand(const Command& app) {
   cameras.option("--target", options->target, "X,Y,Z: what it looks at");
   cameras.option("--up", options->up, "X,Y,Z: up in the world (default: 0,1,0)");
   const Command buffers =
-      command.group("Buffers: a layer, a channel, or a file without extension, in place of the guess");
+      command.group("Buffers: a layer, a channel, a file without extension, or file:layer, in place of the guess");
   const std::pair<const char*, Role> roles[] = {{"--front-depth", Role::FrontDepth},
                                                 {"--back-depth", Role::BackDepth},
                                                 {"--irradiance", Role::Irradiance},

@@ -1,91 +1,15 @@
 #include "init/manifest.h"
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <iterator>
 #include <map>
 #include <numbers>
 
 #include "common/error.h"
-#include "common/parse.h"
+#include "init/sides.h"
 
 namespace pellucid::harness {
-
-namespace {
-
-// Takes the channels of these components out of `components`, when all are there.
-std::vector<std::string> take(std::map<std::string, std::string>& components, const char* wanted) {
-  std::vector<std::string> result;
-  for (const char* c = wanted; *c; ++c) {
-    const auto found = components.find(std::string(1, *c));
-    if (found == components.end()) return {};
-    result.push_back(found->second);
-  }
-  for (const char* c = wanted; *c; ++c) components.erase(std::string(1, *c));
-  return result;
-}
-
-// Some programs write the components of colors out.
-std::string componentOf(const std::string& name) {
-  const std::string component = lower(name);
-  for (const char* color : {"red", "green", "blue", "alpha"})
-    if (component == color) return component.substr(0, 1);
-  return component;
-}
-
-// depth.0001: the frame's number says nothing of the content.
-std::string withoutFrame(const std::string& stem) {
-  const std::size_t end = stem.find_last_not_of("0123456789");
-  return end != std::string::npos && end > 0 && end + 1 < stem.size() && std::string(". _-").find(stem[end]) != std::string::npos
-             ? stem.substr(0, end)
-             : stem;
-}
-
-void addPart(const std::filesystem::path& path, const ExrFile& file, int part,
-             std::vector<ChannelGroup>& groups) {
-  if (lower(file.partName(part)).find("crypto") != std::string::npos) return;
-  std::map<std::string, std::map<std::string, std::string>> layers;  // component, in lower case -> channel
-  for (const std::string& channel : file.channels(part)) {
-    const std::size_t dot = channel.rfind('.');
-    const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
-    if (lower(layer).find("crypto") != std::string::npos) continue;
-    layers[layer][componentOf(channel.substr(dot + 1))] = channel;
-  }
-  for (auto& [layer, components] : layers) {
-    ChannelGroup group{path, part, layer, !layer.empty(), file.viewOf(part, components.begin()->second), file.partCount() > 1, {}};
-    if (layer.empty()) group.name = file.partCount() > 1 ? file.partName(part) : withoutFrame(path.stem().string());
-    const auto add = [&](std::vector<std::string> channels) {
-      if (channels.empty()) return;
-      group.channels = std::move(channels);
-      groups.push_back(group);
-    };
-    for (const char* wanted : {"rgb", "xyz"}) add(take(components, wanted));
-    components.erase("a");
-    for (const auto& [component, channel] : components) add({channel});
-  }
-}
-
-}  // namespace
-
-std::vector<ChannelGroup> survey(const std::vector<std::filesystem::path>& files) {
-  std::vector<ChannelGroup> groups;
-  for (const std::filesystem::path& path : files) {
-    const ExrFile file(path);
-    for (int part = 0; part < file.partCount(); ++part) addPart(path, file, part, groups);
-  }
-  return groups;
-}
-
-Image readGroup(const ChannelGroup& group) {
-  Image image;
-  image.channels = static_cast<int>(group.channels.size());
-  std::vector<ExrPlane> planes;
-  for (std::size_t i = 0; i < group.channels.size(); ++i)
-    planes.push_back({group.channels[i], &image, static_cast<int>(i), 0});
-  ExrFile(group.file).read(group.part, ExrWindow::Display, planes);
-  return image;
-}
 
 namespace {
 
@@ -194,13 +118,6 @@ const Name kNames[] = {
     {Role::Irradiance, Match::Holds, "", "the only color that is left", kIsPicture},
 };
 
-std::string plain(const std::string& text) {
-  std::string result;
-  for (const unsigned char c : text)
-    if (std::isalnum(c)) result += static_cast<char>(std::tolower(c));
-  return result;
-}
-
 bool fits(const std::string& name, const Name& known) {
   switch (known.match) {
     case Match::Is:
@@ -212,9 +129,6 @@ bool fits(const std::string& name, const Name& known) {
   }
   return false;
 }
-
-// The role's buffer has three numbers a pixel.
-bool isTriple(Role role) { return role == Role::Irradiance || role == Role::Albedo; }
 
 // A single number may be the first of a color: RenderDoc saves every texture as one, and V-Ray, Redshift, Octane and Corona their
 // depths and ids.
@@ -249,18 +163,26 @@ bool isNoDiffuseLight(const std::string& name) {
                          "volume", "transl", "transmi", "sss", "subsurface"});
 }
 
+// Of a file with the name "topaz", not every channel is a depth.
+bool isOnlyStem(const ChannelGroup& group, const std::string& name, const Name& known) {
+  return known.match == Match::Ends && known.text == std::string("z") && !group.isNamed && group.channels.size() == 1 &&
+         name == plain(group.name) && name != "z" && wordsOf(group.name).back() != "z";
+}
+
 bool hasName(const ChannelGroup& group, const Name& known) {
   const std::vector<std::string> names = namesOf(group);
   if (isNoRole(names[0]) || (names.size() > 1 && isNoRole(names[1]))) return false;
   if (known.role == Role::Irradiance && isNoDiffuseLight(names[0])) return false;
-  return std::any_of(names.begin(), names.end(), [&](const std::string& name) { return fits(name, known); });
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return fits(name, known) && !isOnlyStem(group, name, known); });
 }
 
 bool hasNameOf(const ChannelGroup& group, const Name& known, const std::vector<ChannelGroup>& groups) {
   const auto isBeside = [&](const ChannelGroup& other) {
     return plain(other.name).find(known.beside) != std::string::npos;
   };
-  return hasName(group, known) && std::any_of(groups.begin(), groups.end(), isBeside);
+  return hasName(group, known) && !(isDepth(known.role) && isOfVector(group, groups)) &&
+         std::any_of(groups.begin(), groups.end(), isBeside);
 }
 
 Guess guessOf(const ChannelGroup& group, const Name& known) {
@@ -274,42 +196,244 @@ Guess guessOf(const ChannelGroup& group, const Name& known) {
   return guess;
 }
 
-bool isTaken(const std::map<Role, Guess>& guesses, const ChannelGroup& group) {
-  return std::any_of(guesses.begin(), guesses.end(), [&](const auto& entry) {
-    const ChannelGroup& other = entry.second.group;
-    return other.file == group.file && other.part == group.part &&
-           other.channels.front() == group.channels.front();
+bool isSame(const ChannelGroup& a, const ChannelGroup& b) {
+  return a.file == b.file && a.part == b.part && a.channels.front() == b.channels.front();
+}
+
+bool isOfOneFile(const ChannelGroup& a, const ChannelGroup& b) { return a.file == b.file && a.part == b.part; }
+
+bool areOfSeveral(const std::vector<ChannelGroup>& groups) {
+  return std::any_of(groups.begin(), groups.end(), [&](const ChannelGroup& group) { return !isOfOneFile(group, groups.front()); });
+}
+
+// Buffers of a frame of back faces are no others' but the back depth's.
+class Guesser {
+public:
+  Guesser(const std::vector<ChannelGroup>& groups, const IsColor& isColor) : groups_(groups), isColor_(isColor), sides_(groups) {
+    prefer([&](const ChannelGroup& group) { return sides_.ofFile(group) != Side::Back; });
+    prefer([&](const ChannelGroup& group) { return sides_.ofFile(group) == Side::Front; });
+  }
+
+  std::map<Role, Guess> guess(const std::map<Role, std::string>& given);
+
+private:
+  template <class Is>
+  void prefer(const Is& is) {
+    std::stable_partition(groups_.begin(), groups_.end(), is);
+  }
+  bool hasShape(Role role, const ChannelGroup& group) const;
+  bool isBack(Role role, const ChannelGroup& group) const;
+  bool isTaken(const ChannelGroup& group) const;
+  bool isNumber(Role role, const ChannelGroup& group);
+  bool couldBe(Role role, const ChannelGroup& group, const Name& known);
+  template <class Accept>
+  std::optional<Guess> find(Role role, Role named, const Accept& accept);
+  bool isNameOf(Role role, const ChannelGroup& group) const;
+  std::vector<ChannelGroup> fitting(Role role, const std::string& name, bool& isFile) const;
+  std::string listOf(const std::vector<ChannelGroup>& groups) const;
+  ChannelGroup chosen(Role role, const std::string& name) const;
+  void addGiven(Role role, const std::string& name);
+  void addFront();
+  void addBack();
+  void addOthers(bool takesBacks);
+  void takeOneLayer();
+  void nameOthers();
+
+  std::vector<ChannelGroup> groups_;  // those that are preferred come first
+  const IsColor& isColor_;
+  const Sides sides_;
+  std::map<Role, std::string> given_;
+  std::map<Role, Guess> guesses_;
+  std::vector<ChannelGroup> colors_;  // whose names are those of numbers
+};
+
+// In a file of more channels, its name says nothing of its color.
+bool Guesser::hasShape(Role role, const ChannelGroup& group) const {
+  const auto isBeside = [&](const ChannelGroup& other) { return isOfOneFile(group, other) && !isSame(group, other); };
+  return hasShapeOf(role, group) && (isTriple(role) || group.isNamed || group.channels.size() == 1 ||
+                                     std::none_of(groups_.begin(), groups_.end(), isBeside));
+}
+
+// A file of back depth that only a person or its name tells from one of front depth is all of back faces.
+bool Guesser::isBack(Role role, const ChannelGroup& group) const {
+  if (sides_.of(role, group) == Side::Back) return true;
+  const auto back = guesses_.find(Role::BackDepth), front = guesses_.find(Role::FrontDepth);
+  return !isDepth(role) && back != guesses_.end() && front != guesses_.end() && isOfOneFile(group, back->second.group) &&
+         !isOfOneFile(group, front->second.group) && !isNameOf(Role::BackDepth, back->second.group) &&
+         isNameOf(Role::FrontDepth, back->second.group);
+}
+
+bool Guesser::isTaken(const ChannelGroup& group) const {
+  return std::any_of(guesses_.begin(), guesses_.end(), [&](const auto& entry) { return isSame(entry.second.group, group); }) ||
+         std::any_of(colors_.begin(), colors_.end(), [&](const ChannelGroup& color) { return isSame(color, group); });
+}
+
+// Colored ids, and depths beside normals, have the names of numbers.
+bool Guesser::isNumber(Role role, const ChannelGroup& group) {
+  if (isTriple(role) || group.channels.size() != 3 || !isColor_ || !isColor_(role, group)) return true;
+  colors_.push_back(group);
+  return false;
+}
+
+bool Guesser::couldBe(Role role, const ChannelGroup& group, const Name& known) {
+  return hasShape(role, group) && !isTaken(group) && hasNameOf(group, known, groups_) && isNumber(role, group);
+}
+
+// The first that has a name of the role `named`.
+template <class Accept>
+std::optional<Guess> Guesser::find(Role role, Role named, const Accept& accept) {
+  for (const Name& known : kNames)
+    for (const ChannelGroup& group : groups_)
+      if (known.role == named && accept(group) && couldBe(role, group, known)) return guessOf(group, known);
+  return std::nullopt;
+}
+
+bool Guesser::isNameOf(Role role, const ChannelGroup& group) const {
+  return std::any_of(std::begin(kNames), std::end(kNames),
+                     [&](const Name& known) { return known.role == role && hasNameOf(group, known, groups_); });
+}
+
+std::string Guesser::listOf(const std::vector<ChannelGroup>& groups) const {
+  std::string list;
+  for (const ChannelGroup& group : groups) list += (list.empty() ? "" : ", ") + labelOf(group, groups_);
+  return list;
+}
+
+// Of equal names, a render of back faces has the back depth, and no other buffer.
+std::vector<ChannelGroup> Guesser::fitting(Role role, const std::string& name, bool& isFile) const {
+  Named named = groupsNamed(name, role, groups_);
+  std::vector<ChannelGroup>& groups = named.groups;
+  std::erase_if(groups, [&](const ChannelGroup& group) {
+    return !hasShape(role, group) && (isTriple(role) || group.channels.size() != 1);
   });
+  const auto isOther = [&](const ChannelGroup& group) { return isBack(role, group) != (role == Role::BackDepth); };
+  if (areOfSeveral(groups) && !std::all_of(groups.begin(), groups.end(), isOther)) std::erase_if(groups, isOther);
+  isFile = named.isFile;
+  return groups;
 }
 
-// The view layer that a program writes before the pass: "Char" of Char.Depth, and of Char.Depth.left in the view "left".
-std::string layerOf(const ChannelGroup& group) {
-  std::string name = group.name;
-  if (!group.view.empty() && name.ends_with("." + group.view)) name.resize(name.size() - group.view.size() - 1);
-  const std::size_t dot = name.rfind('.');
-  return dot == std::string::npos ? "" : name.substr(0, dot);
+ChannelGroup Guesser::chosen(Role role, const std::string& name) const {
+  bool isFile = false;
+  std::vector<ChannelGroup> groups = fitting(role, name, isFile);
+  const std::string start = std::string(roleName(role)) + ": ";
+  if (groups.empty()) {
+    std::vector<ChannelGroup> all = groups_;
+    std::erase_if(all, [&](const ChannelGroup& group) { return !hasShape(role, group); });
+    throw UsageError(start + "there is no \"" + name + "\" that fits; there are " + listOf(all));
+  }
+  if (areOfSeveral(groups)) throw UsageError(start + "several have the name \"" + name + "\"; name one of " + listOf(groups));
+  const auto hasName = [&](const ChannelGroup& group) {
+    return isNameOf(role, group) || (role == Role::BackDepth && isNameOf(Role::FrontDepth, group));
+  };
+  const auto found = std::find_if(groups.begin(), groups.end(), hasName);
+  if (found != groups.end()) return *found;
+  if (isFile && groups.size() > 1) throw UsageError(start + "\"" + name + "\" has several; name one of " + listOf(groups));
+  return groups.front();
 }
 
-// Buffers of other view layers than the irradiance's give way to those of its layer.
-void takeOneLayer(const std::vector<ChannelGroup>& groups, const std::map<Role, std::string>& given,
-                  std::map<Role, Guess>& guesses) {
-  const auto light = guesses.find(Role::Irradiance);
-  if (light == guesses.end() || layerOf(light->second.group).empty()) return;
-  const std::string layer = layerOf(light->second.group);
-  for (auto& entry : guesses) {
-    const Role role = entry.first;
-    Guess& guess = entry.second;
-    if (given.count(role) || layerOf(guess.group).empty() || layerOf(guess.group) == layer) continue;
-    guess.doubt = "is of the layer \"" + layerOf(guess.group) + "\", but the irradiance of \"" + layer + "\"";
-    for (const Name& known : kNames) {
-      const auto found = std::find_if(groups.begin(), groups.end(), [&](const ChannelGroup& group) {
-        return layerOf(group) == layer && hasShapeOf(role, group) && hasNameOf(group, known, groups);
-      });
-      if (known.role != role || found == groups.end()) continue;
-      guess = guessOf(*found, known);
+void Guesser::addGiven(Role role, const std::string& name) {
+  const ChannelGroup group = chosen(role, name);
+  if (!isNumber(role, group))
+    throw UsageError(std::string(roleName(role)) + ": " + group.file.string() + " " + group.name + ": " + kIsColor +
+                     "; name one of " + group.channels[0] + ", " + group.channels[1] + ", " + group.channels[2]);
+  Guess guess = guessOf(group, {role, Match::Is, "", ""});
+  guess.why = "you named it";
+  // Its name still says what the numbers are.
+  const auto known = std::find_if(std::begin(kNames), std::end(kNames), [&](const Name& candidate) {
+    return candidate.role == role && hasNameOf(group, candidate, groups_);
+  });
+  if (known != std::end(kNames)) {
+    guess.scale = known->scale;
+    guess.includesAlbedo = known->includesAlbedo;
+    guess.metersPerUnit = known->metersPerUnit;
+  }
+  guesses_[role] = guess;
+}
+
+// A lone hero_back.exr with Z has a front depth.
+void Guesser::addFront() {
+  const auto isOfBacks = [&](const ChannelGroup& group) { return isBack(Role::FrontDepth, group); };
+  auto found = find(Role::FrontDepth, Role::FrontDepth, [&](const ChannelGroup& group) {
+    return !isOfBacks(group) && !isNameOf(Role::BackDepth, group);
+  });
+  if (!found && sides_.areAllBack())
+    found = find(Role::FrontDepth, Role::FrontDepth,
+                 [&](const ChannelGroup& group) { return !group.isNamed || !isNameOf(Role::BackDepth, group); });
+  if (found) guesses_[Role::FrontDepth] = *found;
+}
+
+void Guesser::addBack() {
+  auto found = find(Role::BackDepth, Role::BackDepth, [](const ChannelGroup&) { return true; });
+  if (!found) {
+    found = find(Role::BackDepth, Role::FrontDepth, [&](const ChannelGroup& group) { return isBack(Role::BackDepth, group); });
+    if (found) found->why += ", in what is named after back faces";
+  }
+  if (found) guesses_[Role::BackDepth] = *found;
+}
+
+// In the order of names: pictures come last.
+void Guesser::addOthers(bool takesBacks) {
+  for (const Name& known : kNames) {
+    if (isDepth(known.role) || guesses_.count(known.role)) continue;
+    for (const ChannelGroup& group : groups_) {
+      if ((!takesBacks && isBack(known.role, group)) || !couldBe(known.role, group, known)) continue;
+      Guess& guess = guesses_[known.role] = guessOf(group, known);
+      if (takesBacks) guess.doubt = "\"" + labelOf(group, groups_) + "\" is of a file of back faces: name the pass of front faces";
+      // Light groups share the name, and each has a part of the light.
+      for (const ChannelGroup& other : groups_)
+        if (known.role == Role::Irradiance && *known.text && !isSame(other, group) && !isBack(known.role, other) &&
+            hasShape(known.role, other) && layerOf(other) == layerOf(group) && hasNameOf(other, known, groups_))
+          guess.doubt = "\"" + labelOf(other, groups_) + "\" has the same name: if each holds a part of the light, render their sum";
       break;
     }
   }
+}
+
+// Buffers of other view layers than the irradiance's give way to those of its layer.
+void Guesser::takeOneLayer() {
+  const auto light = guesses_.find(Role::Irradiance);
+  if (light == guesses_.end() || layerOf(light->second.group).empty()) return;
+  const std::string layer = layerOf(light->second.group);
+  for (auto& entry : guesses_) {
+    const Role role = entry.first;
+    Guess& guess = entry.second;
+    const std::string other = layerOf(guess.group);
+    const bool isBackLayer = role == Role::BackDepth && isBack(role, guess.group);
+    if (given_.count(role) || isBackLayer || other.empty() || other == layer) continue;
+    guess.doubt = "is of the layer \"" + other + "\", but the irradiance of \"" + layer + "\"";
+    const auto found = find(role, role, [&](const ChannelGroup& group) {
+      return layerOf(group) == layer && isBack(role, group) == (role == Role::BackDepth);
+    });
+    if (found) guess = *found;
+  }
+}
+
+// Another file's depth of the same name may be that of back faces.
+void Guesser::nameOthers() {
+  const auto front = guesses_.find(Role::FrontDepth);
+  if (front == guesses_.end() || given_.count(Role::FrontDepth) || guesses_.count(Role::BackDepth)) return;
+  std::string& doubt = front->second.doubt;
+  for (const ChannelGroup& other : groups_)
+    if (doubt.empty() && !isOfOneFile(other, front->second.group) && isNameOf(Role::FrontDepth, other) &&
+        hasShape(Role::FrontDepth, other) && !isTaken(other) && isNumber(Role::FrontDepth, other))
+      doubt = "\"" + labelOf(other, groups_) + "\" may be another depth: --back-depth names it, if it is of back faces";
+}
+
+std::map<Role, Guess> Guesser::guess(const std::map<Role, std::string>& given) {
+  given_ = given;
+  for (const auto& [role, name] : given) addGiven(role, name);
+  if (!guesses_.count(Role::FrontDepth)) addFront();
+  if (!guesses_.count(Role::BackDepth)) addBack();
+  // Of equal names, those of one render belong together.
+  if (const auto front = guesses_.find(Role::FrontDepth); front != guesses_.end()) {
+    const std::filesystem::path file = front->second.group.file;
+    prefer([&](const ChannelGroup& group) { return group.file == file; });
+  }
+  addOthers(false);
+  addOthers(true);
+  takeOneLayer();
+  nameOthers();
+  return std::move(guesses_);
 }
 
 }  // namespace
@@ -319,51 +443,9 @@ const char* roleName(Role role) {
   return kKeys[static_cast<std::size_t>(role)];
 }
 
-std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
-                                 const std::map<Role, std::string>& given) {
-  std::map<Role, Guess> guesses;
-  for (const auto& entry : given) {
-    const Role role = entry.first;  // no structured bindings: Clang 14 does not capture them
-    const std::string& name = entry.second;
-    const auto found = std::find_if(groups.begin(), groups.end(), [&](const ChannelGroup& group) {
-      return hasShapeOf(role, group) && (group.name == name || group.channels.front() == name);
-    });
-    if (found == groups.end()) {
-      std::string list;
-      for (const ChannelGroup& group : groups)
-        if (hasShapeOf(role, group)) list += (list.empty() ? "" : ", ") + group.name;
-      throw UsageError(std::string(roleName(role)) + ": there is no \"" + name + "\" that fits; there are " +
-                       list);
-    }
-    Guess guess = guessOf(*found, {role, Match::Is, "", ""});
-    guess.why = "you named it";
-    // Its name still says what the numbers are.
-    const auto known = std::find_if(std::begin(kNames), std::end(kNames), [&](const Name& candidate) {
-      return candidate.role == role && hasNameOf(*found, candidate, groups);
-    });
-    if (known != std::end(kNames)) {
-      guess.scale = known->scale;
-      guess.includesAlbedo = known->includesAlbedo;
-      guess.metersPerUnit = known->metersPerUnit;
-    }
-    guesses[role] = guess;
-  }
-  for (const Name& known : kNames) {
-    if (guesses.count(known.role)) continue;
-    for (const ChannelGroup& group : groups) {
-      if (!hasShapeOf(known.role, group) || isTaken(guesses, group)) continue;
-      if (!hasNameOf(group, known, groups)) continue;
-      Guess& guess = guesses[known.role] = guessOf(group, known);
-      // Light groups share the name, and each has a part of the light.
-      for (const ChannelGroup& other : groups)
-        if (known.role == Role::Irradiance && *known.text && &other != &group && hasShapeOf(known.role, other) &&
-            layerOf(other) == layerOf(group) && hasNameOf(other, known, groups))
-          guess.doubt = "\"" + other.name + "\" has the same name: if each holds a part of the light, render their sum";
-      break;
-    }
-  }
-  takeOneLayer(groups, given, guesses);
-  return guesses;
+std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups, const std::map<Role, std::string>& given,
+                                 const IsColor& isColor) {
+  return Guesser(groups, isColor).guess(given);
 }
 
 }  // namespace pellucid::harness

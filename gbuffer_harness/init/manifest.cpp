@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/glm.hpp>
+#include <set>
 
 #include "capture/manifest.h"
 #include "capture/manifest_parts.h"
@@ -39,6 +40,7 @@ public:
 
 private:
   Json sourceOf(Role role) const;
+  std::string fileOf(const ChannelGroup& group) const;
   void say(Role role, const std::string& how);
   void doubt(const std::string& key, const std::string& sentence);
   void addDepths();
@@ -50,6 +52,11 @@ private:
   void addBlackness();
   std::vector<ChannelGroup> ofOneView(std::vector<ChannelGroup> groups);
   void addAttributes();
+  bool isColor(Role role, const ChannelGroup& group);
+  std::string colorsOf(Role role) const;
+  std::string backs() const;
+  void guessBuffers(const std::vector<ChannelGroup>& groups);
+  std::vector<CameraSource> cameraSources() const;
   void nameUnused(const std::vector<ChannelGroup>& groups);
   void addCamera();
   void addMissing();
@@ -60,6 +67,7 @@ private:
   const std::filesystem::path& folder_;
   const InitWords& words_;
   std::map<Role, Guess> guesses_;
+  std::map<Role, std::set<std::string>> colors_;  // sentences: groups that have the role's name and hold colors
   Image front_, irradiance_;
   std::vector<bool> isTranslucent_;  // of each pixel
   DepthFacts depth_;
@@ -79,11 +87,20 @@ Json Builder::sourceOf(Role role) const {
   return json;
 }
 
+// Of files of one name in several folders, the path.
+std::string Builder::fileOf(const ChannelGroup& group) const {
+  const std::filesystem::path name = group.file.filename();
+  const bool isOfSeveral = std::any_of(files_.begin(), files_.end(), [&](const std::filesystem::path& other) {
+    return other != group.file && other.filename() == name;
+  });
+  return (isOfSeveral ? group.file : name).string();
+}
+
 void Builder::say(Role role, const std::string& how) {
   const Guess& guess = guesses_.at(role);
   std::string channels;
   for (const std::string& channel : guess.group.channels) channels += (channels.empty() ? "" : ",") + channel;
-  result_.found.push_back(std::string(roleName(role)) + ": " + guess.group.file.filename().string() + " " +
+  result_.found.push_back(std::string(roleName(role)) + ": " + fileOf(guess.group) + " " +
                           channels + (how.empty() ? "" : ", " + how) + ": " + guess.why);
   if (!guess.doubt.empty()) doubt(roleName(role), guess.doubt);
 }
@@ -238,8 +255,8 @@ void Builder::addMaterial() {
   isTranslucent_.assign(front_.pixels(), true);
   if (!guesses_.count(Role::Material)) {
     if (!words_.materialIds.empty())
-      throw UsageError("--material-id: no channel has the name of an id pass; --material-index names it");
-    return doubt("material", "no channel says what is translucent: everything is");
+      throw UsageError("--material-id: no channel has the name of an id pass; --material-index names it" + colorsOf(Role::Material));
+    return doubt("material", "no channel says what is translucent: everything is" + colorsOf(Role::Material));
   }
   const Image image = read(Role::Material);
   const auto stored = storedIds(image);
@@ -302,13 +319,15 @@ void Builder::nameUnused(const std::vector<ChannelGroup>& groups) {
              used.channels.front() == group.channels.front();
     });
     if (!isUsed)
-      list += (list.empty() ? "" : ", ") + group.file.filename().string() + " " + group.channels.front();
+      list += (list.empty() ? "" : ", ") + fileOf(group) + " " + group.channels.front();
   }
   if (!list.empty()) result_.found.push_back("not used: " + list);
+  for (const auto& [role, sentences] : colors_)
+    for (const std::string& sentence : sentences) result_.found.push_back(std::string(roleName(role)) + ": not " + sentence);
 }
 
 void Builder::addCamera() {
-  camera_ = guessCamera(files_, guesses_.at(Role::Irradiance).group, width_, height_, words_.camera, depth_);
+  camera_ = guessCamera(cameraSources(), width_, height_, words_.camera, depth_);
   result_.json["camera"] = {{"clipFromView", camera_.clipFromView}, {"viewFromWorld", camera_.viewFromWorld}};
   result_.found.push_back("camera: the projection is that of " + camera_.why);
   std::string unknown;
@@ -337,17 +356,67 @@ void Builder::addMissing() {
   result_.missing.insert(result_.missing.end(), doubts.begin(), doubts.end());
 }
 
-GuessedManifest Builder::build() {
-  const std::vector<ChannelGroup> groups = ofOneView(survey(files_));
-  guesses_ = guessRoles(groups, words_.roles);
+// Samples of a number that a program saves as a color are equal, or the first has it and the others are 0.
+bool Builder::isColor(Role role, const ChannelGroup& group) {
+  const Image image = readGroup(group);
+  bool areEqual = true, isFirst = true;
+  for (std::size_t i = 0; i < image.data.size(); i += 3)
+    for (std::size_t c = i + 1; c < i + 3; ++c) {
+      // Lossy compression rounds each channel by itself.
+      const float a = image.data[i], b = image.data[c];
+      areEqual &= a == b || std::abs(a - b) <= 0.01f * std::max(std::abs(a), std::abs(b)) || (std::isnan(a) && std::isnan(b));
+      isFirst &= b == 0;
+    }
+  if (areEqual || isFirst) return false;
+  const std::string name = fileOf(group) + " " + (group.isNamed ? group.name : group.channels.front());
+  colors_[role].insert(name + ": " + kIsColor + "; an option names one of " + group.channels[0] + ", " + group.channels[1] + ", " +
+                       group.channels[2]);
+  return true;
+}
+
+std::string Builder::colorsOf(Role role) const {
+  std::string list;
+  if (const auto found = colors_.find(role); found != colors_.end())
+    for (const std::string& sentence : found->second) list += "; " + sentence;
+  return list;
+}
+
+// A file's name may say back faces and mean a camera behind the body.
+std::string Builder::backs() const {
+  const auto back = guesses_.find(Role::BackDepth);
+  if (back == guesses_.end()) return "";
+  return "; " + fileOf(back->second.group) + " " + back->second.group.channels.front() + " is taken for the back depth";
+}
+
+void Builder::guessBuffers(const std::vector<ChannelGroup>& groups) {
+  guesses_ = guessRoles(groups, words_.roles, [&](Role role, const ChannelGroup& group) { return isColor(role, group); });
   for (const Role role : {Role::FrontDepth, Role::Irradiance}) {
     if (guesses_.count(role)) continue;
     std::string list;
     for (const ChannelGroup& group : groups)
       list += (list.empty() ? "" : ", ") + group.name + " (" + group.channels.front() + ")";
     throw UsageError(std::string(role == Role::FrontDepth ? "--front-depth" : "--irradiance") +
-                     ": no name is that of one; name a layer, a channel or a file of: " + list);
+                     ": no name is that of one; name a layer, a channel or a file of: " + list + backs() + colorsOf(role));
   }
+}
+
+// The color's file comes first, and files without a buffer last.
+std::vector<CameraSource> Builder::cameraSources() const {
+  std::vector<CameraSource> sources;
+  const auto add = [&](const std::filesystem::path& file, int part, bool isUsed) {
+    const auto is = [&](const CameraSource& other) { return other.file == file && (!isUsed || other.part == part); };
+    if (std::none_of(sources.begin(), sources.end(), is)) sources.push_back({file, part, isUsed});
+  };
+  const auto addRole = [&](const auto& entry) { add(entry.second.group.file, entry.second.group.part, true); };
+  addRole(*guesses_.find(Role::Irradiance));
+  std::for_each(guesses_.begin(), guesses_.end(), addRole);
+  for (const std::filesystem::path& file : files_) add(file, 0, false);
+  return sources;
+}
+
+GuessedManifest Builder::build() {
+  const std::vector<ChannelGroup> groups = ofOneView(survey(files_));
+  guessBuffers(groups);
   const Guess& front = guesses_.at(Role::FrontDepth);
   const double meters = words_.metersPerUnit.value_or(front.metersPerUnit > 0 ? front.metersPerUnit : 1);
   result_.json["pellucid"] = 1;

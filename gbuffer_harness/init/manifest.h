@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -24,6 +25,7 @@ struct ChannelGroup {
   bool hasBeside = false;  // the file has several parts
   // Full names: of a color R, G, B, of a vector X, Y, Z, else of each channel by itself.
   std::vector<std::string> channels;
+  std::string partName = "";  // empty: it has none
 };
 
 // The groups of all files, of which none is empty. Alpha is left out, and so are Cryptomatte's. Throws
@@ -47,10 +49,15 @@ struct Guess {
   double metersPerUnit = 0;  // 0: the name says nothing
 };
 
-// By names that Blender, Arnold, Nuke, V-Ray, Unreal, Unity, RenderDoc and this program use. `given`: the
-// person's own, layer, channel, or file without extension. Throws UsageError for one that is not there.
-std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups,
-                                 const std::map<Role, std::string>& given);
+// True of three channels that differ, so that none of them is the number of the pixel.
+using IsColor = std::function<bool(Role, const ChannelGroup&)>;
+inline constexpr const char* kIsColor = "its R, G and B differ: a color, no number";
+
+// By names that Blender, Arnold, Nuke, V-Ray, Unreal, Unity, RenderDoc and this program use. Depths of files or layers that are
+// named "back" are back depths. `given`: the person's own, layer, channel, file without extension, or file:layer. Empty `isColor`:
+// no pixels are read. Throws UsageError for a name that is not there, or that several groups have.
+std::map<Role, Guess> guessRoles(const std::vector<ChannelGroup>& groups, const std::map<Role, std::string>& given,
+                                 const IsColor& isColor = {});
 
 // Statements of the person; all are optional.
 struct CameraWords {
@@ -75,11 +82,18 @@ struct GuessedCamera {
   bool isPlaced = false;             // viewFromWorld is known
 };
 
-// From `words`, else from the OpenEXR attributes worldToCamera, worldToNDC and screenWindowWidth of the
-// files, first of the color's part. Throws UsageError, which names the option, where neither says the projection, and InputError for
-// attributes that are no camera's.
-GuessedCamera guessCamera(const std::vector<std::filesystem::path>& files, const ChannelGroup& color, int width, int height,
-                          const CameraWords& words, const DepthFacts& depth);
+// A part whose header may have a camera.
+struct CameraSource {
+  std::filesystem::path file;
+  int part = 0;
+  bool isUsed = false;  // a buffer is of it
+};
+
+// From `words`, else from the OpenEXR attributes worldToCamera, worldToNDC and screenWindowWidth of the first source that has them.
+// Throws UsageError, which names the option, where neither says the projection, and InputError for attributes that are no camera's,
+// or of which used sources have others.
+GuessedCamera guessCamera(const std::vector<CameraSource>& sources, int width, int height, const CameraWords& words,
+                          const DepthFacts& depth);
 
 struct InitWords {
   CameraWords camera;

@@ -56,7 +56,7 @@ TEST_F(InitCommand, AnAbsentFlagIsAGuess) {
   for (const char* way : {"--reversed-z", "--forward-z"}) {
     ASSERT_EQ(run("capture --procedural sphere --size 32x24 --depth device " + std::string(way) + " -o " + path("d.exr")).code, 0);
     const auto manifest = [&](const std::string& flag) {
-      EXPECT_EQ(run("init " + path("d.exr") + " --fov 20 --near 10 " + flag + " -o " + path("d.json")).code, 0);
+      EXPECT_EQ(run("init " + path("d.exr") + " --fov 20 --near 10 --overwrite " + flag + " -o " + path("d.json")).code, 0);
       return bytes("d.json");
     };
     const std::string guessed = manifest("");
@@ -78,6 +78,20 @@ TEST_F(InitCommand, AnAbsentFlagOfACaptureIsTheScenesDefault) {
   EXPECT_EQ(absent, captured("--forward-z --projection perspective"));
   EXPECT_NE(absent, captured("--reversed-z"));
   EXPECT_NE(absent, captured("--projection orthographic"));
+}
+
+// Renders take hours, and people edit manifests.
+TEST_F(InitCommand, FilesThatAreThereAreKept) {
+  const std::string init = "init " + path("s.exr") + " --fov 20 -o ", input = bytes("s.exr");
+  std::filesystem::create_hard_link(path("s.exr"), path("h.exr"));
+  std::filesystem::create_directory(path("d"));
+  for (const std::string& same : {path("s.exr"), path("h.exr"), path("d") + "/../s.exr"})
+    expect(2, init + same + " --overwrite", "-o " + same + ": is an input of this command");
+  EXPECT_EQ(bytes("s.exr"), input);
+  std::ofstream(path("c.json")) << "edited";
+  expect(2, init + path("c.json"), "-o " + path("c.json") + ": is there; --overwrite replaces it");
+  EXPECT_EQ(bytes("c.json"), "edited");
+  expect(0, init + path("c.json") + " --overwrite", "wrote");
 }
 
 TEST_F(InitCommand, NamesWhatItNeeds) {

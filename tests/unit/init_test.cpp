@@ -155,6 +155,144 @@ TEST(InitNames, PassesOfOtherContentAreNotTaken) {
   EXPECT_EQ(guessRoles({number("WorldDepth"), color("irradiance")}, {}).at(Role::FrontDepth).metersPerUnit, 0.01);
 }
 
+ChannelGroup numberOf(const std::string& file, const std::string& layer) { return {file, 0, layer, true, "", false, {layer + ".Z"}}; }
+ChannelGroup colorOf(const std::string& file, const std::string& layer) {
+  return {file, 0, layer, true, "", false, {layer + ".R", layer + ".G", layer + ".B"}};
+}
+std::string takenBy(Role role, const std::vector<ChannelGroup>& groups, const std::map<Role, std::string>& given = {}) {
+  const std::map<Role, Guess> guesses = guessRoles(groups, given);
+  const auto found = guesses.find(role);
+  return found == guesses.end() ? "" : found->second.group.file.string();
+}
+
+// Two renders of one scene have passes of equal names; the shell sorts "back" before "front".
+TEST(InitNames, BackFacesAreTakenFromTheFileThatIsNamedAfterThem) {
+  struct Row {
+    std::string front, back;
+  };
+  for (const Row& row : {Row{"scene_front.exr", "scene_back.exr"}, Row{"front.0001.exr", "back.0001.exr"},
+                         Row{"headFront.exr", "headBack.exr"}, Row{"head.exr", "head_backfaces.exr"}, Row{"headfront.exr", "headback.exr"},
+                         Row{"head.exr", "headback.exr"}, Row{"front/r.exr", "back/r.exr"}}) {
+    SCOPED_TRACE(row.back);
+    std::vector<ChannelGroup> groups;
+    for (const std::string& file : {row.back, row.front}) {
+      groups.push_back(numberOf(file, "V.Depth"));
+      groups.push_back(colorOf(file, "V.DiffDir"));
+      groups.push_back(colorOf(file, "V.DiffCol"));
+      groups.push_back({file, 0, "V.IndexMA", true, "", false, {"V.IndexMA.X"}});
+    }
+    for (int order = 0; order < 2; ++order) {
+      EXPECT_EQ(takenBy(Role::BackDepth, groups), row.back);
+      for (const Role role : {Role::FrontDepth, Role::Irradiance, Role::Albedo, Role::Material}) EXPECT_EQ(takenBy(role, groups), row.front);
+      EXPECT_EQ(guessRoles(groups, {}).at(Role::Irradiance).doubt, "");
+      std::rotate(groups.begin(), groups.begin() + 4, groups.end());
+    }
+  }
+}
+
+// Light groups, views from behind and other words are no back faces.
+TEST(InitNames, OtherWordsThanBackSayNothing) {
+  for (const char* file : {"hero_back.exr", "background.exr", "playback.exr"}) {
+    const std::vector<ChannelGroup> groups = {numberOf(file, "Depth"), colorOf(file, "diffuse_direct_back")};
+    EXPECT_EQ(takenBy(Role::FrontDepth, groups), file);
+    EXPECT_EQ(takenBy(Role::BackDepth, groups), "");
+    EXPECT_EQ(guessRoles(groups, {}).at(Role::Irradiance).doubt, "");
+  }
+  EXPECT_EQ(takenBy(Role::FrontDepth, {numberOf("back.exr", "Depth"), colorOf("light.exr", "irradiance")}), "");
+  EXPECT_EQ(takenBy(Role::BackDepth, {numberOf("r.exr", "V.Depth"), numberOf("r.exr", "BackFaces.V.Depth"), colorOf("r.exr", "V.DiffDir")}),
+            "r.exr");
+  const std::map<Role, Guess> onlyLight = guessRoles({numberOf("front.exr", "Depth"), colorOf("back.exr", "DiffDir")}, {});
+  EXPECT_NE(onlyLight.at(Role::Irradiance).doubt.find("of a file of back faces"), std::string::npos);
+}
+
+// A file, with or without a layer, names what is in it.
+TEST(InitNames, FilesTellPassesOfOneNameApart) {
+  const std::vector<ChannelGroup> groups = {numberOf("b.0007.exr", "Depth"), colorOf("b.0007.exr", "DiffDir"), numberOf("a.exr", "Depth"),
+                                            colorOf("a.exr", "DiffDir")};
+  for (const char* name : {"b", "b.0007", "b.0007.exr", "b:Depth", "b.0007:Depth.Z", "b.0007.exr:Depth"}) {
+    const std::map<Role, std::string> given = {{Role::BackDepth, name}};
+    EXPECT_EQ(takenBy(Role::BackDepth, groups, given), "b.0007.exr") << name;
+    EXPECT_EQ(takenBy(Role::FrontDepth, groups, given), "a.exr") << name;
+    EXPECT_EQ(takenBy(Role::Irradiance, groups, given), "a.exr") << name;
+  }
+  EXPECT_EQ(takenBy(Role::Irradiance, groups, {{Role::FrontDepth, "a"}}), "a.exr");
+  const auto refused = [&](Role role, const std::string& name) { return refusalOf([&] { guessRoles(groups, {{role, name}}); }); };
+  expectNames(refused(Role::BackDepth, "Depth"), {"backDepth: several have the name \"Depth\"", "b.0007:Depth, a:Depth"});
+  expectNames(refused(Role::Irradiance, "c"), {"there is no \"c\"", "b.0007:DiffDir, a:DiffDir"});
+  EXPECT_NE(guessRoles(groups, {}).at(Role::FrontDepth).doubt.find("\"a:Depth\" may be another depth: --back-depth"), std::string::npos);
+}
+
+// As pbrt writes them: names that end in z, and are no depths.
+TEST(InitNames, PartsOfVectorsAreNoDepths) {
+  const auto channels = [](std::vector<std::string> names, const std::string& stem = "r") {
+    std::vector<ChannelGroup> groups = {colorOf("r.exr", "diffuse")};
+    for (const std::string& name : names) {
+      const std::size_t dot = name.rfind('.');
+      groups.push_back({"r.exr", 0, dot == name.npos ? stem : name.substr(0, dot), dot != name.npos, "", false, {name}});
+    }
+    return groups;
+  };
+  const std::vector<std::vector<std::string>> rows = {{"Nx", "Ny", "Nz", "Px", "Py", "Pz"}, {"Nz"},  {"cam_Nz"}, {"dPdux", "dPduy", "dPduz"},
+                                                      {"N.Z"},                              {"normal.Z"}, {"normalZ"}, {"aux.ux", "aux.uz"}};
+  for (const std::vector<std::string>& row : rows) {
+    EXPECT_EQ(takenBy(Role::FrontDepth, channels(row)), "") << row[0];
+    EXPECT_EQ(takenBy(Role::FrontDepth, channels(row, "topaz")), "") << row[0];
+  }
+  for (const char* depth : {"Z", "Main.Z", "linZ", "camera_z", "composition.Z"}) {
+    const std::map<Role, Guess> guesses = guessRoles(channels({"Nx", "Ny", "Nz", depth}), {});
+    ASSERT_EQ(guesses.count(Role::FrontDepth), 1u) << depth;
+    EXPECT_EQ(guesses.at(Role::FrontDepth).group.channels[0], depth);
+  }
+}
+
+// Ids and depths that are saved as colors have equal channels, or, of a debugger, only the first.
+TEST_F(Init, ColorsAreNoNumbers) {
+  const Image& depth = frame_.frontDepth.image;
+  const Image id = materialImage(1), none = materialImage(0);
+  Image rest = id;
+  for (float& value : rest.data) value = 1 - value;
+  using Samples = std::vector<const Image*>;
+  const auto groups = [&](const std::string& idName, const Samples& ids, const std::string& depthName, const Samples& depths) {
+    std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+    for (std::size_t i = 0; i < 3; ++i) {
+      channels.push_back({idName + "." + "RGB"[i], ids[i], 0});
+      channels.push_back({depthName + "." + "RGB"[i], depths[i], 0});
+    }
+    write("colors.exr", channels);
+  };
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  for (const Samples& ids : {Samples{&id, &id, &id}, Samples{&id, &none, &none}}) {
+    groups("VRayMtlID", ids, "ZDepth", {&depth, &depth, &depth});
+    EXPECT_EQ(read(guess({"colors.exr"}, words)).material, frame_.material);
+  }
+  groups("VRayMtlID", {&rest, &id, &none}, "ZDepth", {&depth, &none, &none});
+  const GuessedManifest guessed = guess({"colors.exr"}, words);
+  EXPECT_EQ(guessed.json["buffers"]["frontDepth"]["channel"], "ZDepth.R");
+  expectNames(guessed.json["// material"].get<std::string>(),
+              {"everything is", "colors.exr VRayMtlID: its R, G and B differ: a color, no number", "VRayMtlID.G"});
+  words.roles = {{Role::Material, "VRayMtlID.G"}};
+  EXPECT_EQ(read(guess({"colors.exr"}, words)).material, frame_.material);
+  words.roles = {{Role::Material, "VRayMtlID"}};
+  expectNames(refusalOf([&] { guess({"colors.exr"}, words); }), {"colors.exr VRayMtlID: its R, G and B differ", "name one of VRayMtlID.R"});
+  words.roles = {};
+  groups("MtlID", {&id, &id, &id}, "DepthColors", {&depth, &id, &none});
+  expectNames(refusalOf([&] { guess({"colors.exr"}, words); }),
+              {"--front-depth: no name", "colors.exr DepthColors: its R, G and B differ: a color, no number"});
+}
+
+// A color beside its depth, in a file that is named after depths or ids.
+TEST_F(Init, FilesNamesAreNotThoseOfTheirColors) {
+  std::vector<Channel> channels = triple("", "RGB", frame_.irradiance);
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  write("hero_depth_id.exr", channels);
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  const Capture capture = read(guess({"hero_depth_id.exr"}, words));
+  EXPECT_TRUE(sameBits(capture.frontDepth.image, frame_.frontDepth.image));
+  EXPECT_TRUE(sameBits(capture.irradiance, frame_.irradiance));
+}
+
 // Ids that floats do not tell apart, and depths of a file of several parts.
 TEST_F(Init, LargeIdsAreRefused) {
   const Image id = materialImage(5);
@@ -178,6 +316,89 @@ TEST_F(Init, TransposedCamerasAreRefused) {
   InitWords words;
   words.camera.verticalFov = fov_;
   EXPECT_NE(refusalOf([&] { guess({"t.exr"}, words); }).find("worldToCamera"), std::string::npos);
+}
+
+// Buffers of two cameras are no frame. Attributes of files that no buffer is of do not matter, nor do planes of depth.
+TEST_F(Init, FilesOfTwoCamerasAreRefused) {
+  Imath::M44f camera, moved, ndc, planes, wide;
+  moved[3][0] = 0.05f;
+  ndc[0][0] = 0.9f, ndc[1][1] = -1.2f, ndc[2][0] = ndc[2][1] = -0.5f, ndc[2][3] = -1, ndc[3][3] = 0;
+  camera[2][2] = moved[2][2] = -1;
+  planes = wide = ndc;
+  planes[2][2] = -3, planes[3][2] = -7;
+  wide[0][0] = 0.8f;
+  write("depth.exr", {{"depth.Z", &frame_.frontDepth.image, 0}}, {{"worldToCamera", camera}, {"worldToNDC", ndc}});
+  const auto light = [&](const Imath::M44f& toCamera, const Imath::M44f& toNdc) {
+    write("irradiance.exr", triple("irradiance.", "RGB", frame_.irradiance), {{"worldToCamera", toCamera}, {"worldToNDC", toNdc}});
+  };
+  const auto refusal = [&](const InitWords& words) { return refusalOf([&] { guess({"depth.exr", "irradiance.exr"}, words); }); };
+  light(camera, planes);
+  EXPECT_EQ(refusal({}), "accepted");
+  light(moved, ndc);
+  expectNames(refusal({}), {"depth.exr: worldToCamera: holds 0 where that of ", "irradiance.exr holds 0.05: these are files of two cameras",
+                            "Render all buffers with one"});
+  light(camera, wide);
+  expectNames(refusal({}), {"depth.exr: worldToNDC: holds 0.9 where that of ", "irradiance.exr holds 0.8"});
+  InitWords words;
+  words.camera.verticalFov = fov_;
+  EXPECT_NE(refusal(words).find("two cameras"), std::string::npos);
+  words.camera.eye = {0, 0, 1};
+  words.camera.target = {0, 0, 0};
+  EXPECT_EQ(refusal(words), "accepted");
+  light(camera, ndc);
+  write("notes.exr", triple("notes.", "RGB", frame_.irradiance), {{"worldToCamera", moved}});
+  EXPECT_NO_THROW(guess({"notes.exr", "depth.exr", "irradiance.exr"}, {}));
+}
+
+TEST_F(Init, WindowsOfTwoLensesAreRefused) {
+  Imf::Header wide(1, 1), narrow(1, 1);
+  wide.screenWindowWidth() = 0.7f;
+  narrow.screenWindowWidth() = 0.5f;
+  write("depth.exr", {{"depth.Z", &frame_.frontDepth.image, 0}}, {}, narrow);
+  write("irradiance.exr", triple("irradiance.", "RGB", frame_.irradiance), {}, wide);
+  InitWords words;
+  const auto refusal = [&] { return refusalOf([&] { guess({"depth.exr", "irradiance.exr"}, words); }); };
+  expectNames(refusal(), {"depth.exr: screenWindowWidth: is 0.5, but that of ", "irradiance.exr is 0.7"});
+  words.camera.verticalFov = fov_;
+  EXPECT_EQ(refusal(), "accepted");
+}
+
+// A matrix to 0 .. 1 has y down, and one to -1 .. 1 has y up, wherever the axis meets the image.
+TEST_F(Init, LensesShiftAndOrthographicCamerasNeedNoFarPlane) {
+  std::vector<Channel> channels = triple("irradiance.", "RGB", frame_.irradiance);
+  channels.push_back({"Z", &frame_.frontDepth.image, 0});
+  Imath::M44f identity;
+  const auto clipOf = [&](const glm::dmat4& rows, const InitWords& words = {}) {
+    Imath::M44f ndc;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) ndc[i][j] = static_cast<float>(rows[j][i]);
+    write("lens.exr", channels, {{"worldToCamera", identity}, {"worldToNDC", ndc}});
+    return read(guess({"lens.exr"}, words)).clipFromView;
+  };
+  for (const double shift : {0.0, 0.3, -0.45}) {
+    const double x = 2 * shift, y = -2 * shift;  // of the image's half sides, y down
+    const Matrix fromZero = clipOf({0.75, 0, -0.5 - shift, 0, 0, -1, -0.5 + shift, 0, 0, 0, -1, -1, 0, 0, -1, 0});
+    const Matrix fromMinusOne = clipOf({1.5, 0, -x, 0, 0, 2, y, 0, 0, 0, -1, -1, 0, 0, -1, 0});
+    for (const Matrix& clip : {fromZero, fromMinusOne}) {
+      EXPECT_NEAR(clip[0], 1.5, 1e-6) << shift;
+      EXPECT_NEAR(clip[5], -2, 1e-6) << shift;
+      EXPECT_NEAR(clip[8], -x, 1e-6) << shift;
+      EXPECT_NEAR(clip[9], -y, 1e-6) << shift;
+    }
+  }
+  const glm::dmat4 orthographic(0.02, 0, 0, 0.5, 0, -0.025, 0, 0.5, 0, 0, -1, 0, 0, 0, 0, 1);
+  const Matrix clip = clipOf(orthographic);
+  EXPECT_NEAR(clip[0], 0.04, 1e-6);
+  EXPECT_NEAR(clip[5], -0.05, 1e-6);
+  EXPECT_EQ(clip[15], 1);
+  InitWords words;
+  words.deviceDepth = true;
+  words.camera.nearPlane = 1;
+  Image device = frame_.frontDepth.image;
+  for (float& value : device.data) value = 0.5f;
+  channels.back().image = &device;
+  EXPECT_NE(refusalOf([&] { clipOf(orthographic, words); }).find("--far: is needed with an orthographic camera"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { clipOf(glm::dmat4(1)); }).find("--fov: is needed"), std::string::npos) << "an identity says nothing";
 }
 
 // One file of layers and OpenEXR's camera attributes, as Arnold and Nuke write them.
