@@ -21,21 +21,25 @@ public:
     if (map.viewFromWorld) viewFromWorld_ = toGlm(*map.viewFromWorld);
   }
 
-  // Nothing outside of the map; true where the map has a surface behind `world`, or none at all.
+  // Nothing outside of the map; true where the map and the texels around have a surface behind `world`, or none at all.
   std::optional<bool> lacks(const glm::dvec3& world) const {
     const glm::dvec4 clip = clipFromWorld_ * glm::dvec4(world, 1);
     const Image& image = map_.depth.image;
     const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(image.width, image.height);
     if (!(clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < image.width && at.y < image.height)) return std::nullopt;
-    const double stored = double(*image.at(static_cast<int>(at.x), static_cast<int>(at.y)));
     const glm::dvec3 ray = rayAt(world);
-    const double side = textureSide(clip.w), own = depthOf(world);
-    const double sign = depthOf(world + ray * side) > own ? 1 : -1;
-    const bool device = map_.depth.encoding == PELLUCID_DEPTH_DEVICE;
-    const bool holds = device ? sign * stored < std::max(sign, 0.0) : stored > 0 && stored < double(kLeastNoDepth);
-    if (!holds) return true;
+    const double side = texelSide(clip.w), sign = depthOf(world + ray * side) > depthOf(world) ? 1 : -1;
     const double tolerance = kTexels * side * (1 + std::abs(map_.depthBiasSlope)) + map_.offsetLength;
-    return sign * (stored - map_.depthBiasConstant - depthOf(world + ray * tolerance)) > 0;
+    const double most = sign * (depthOf(world + ray * tolerance) + map_.depthBiasConstant);
+    const auto isNear = [&](int x, int y) {
+      const double stored = double(*image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1)));
+      const bool device = map_.depth.encoding == PELLUCID_DEPTH_DEVICE;
+      const bool holds = device ? sign * stored < std::max(sign, 0.0) : stored > 0 && stored < double(kLeastNoDepth);
+      return holds && sign * stored <= most;
+    };
+    for (int i = 0; i < 9; ++i)
+      if (isNear(static_cast<int>(at.x) + i % 3 - 1, static_cast<int>(at.y) + i / 3 - 1)) return false;
+    return true;
   }
 
 private:
@@ -46,7 +50,7 @@ private:
   }
 
   // The larger side of a texel.
-  double textureSide(double w) const {
+  double texelSide(double w) const {
     const auto side = [&](int row, int texels) {
       const glm::dvec3 across(clipFromWorld_[0][row], clipFromWorld_[1][row], clipFromWorld_[2][row]);
       return 2 * w / (glm::length(across) * texels);

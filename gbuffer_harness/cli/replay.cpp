@@ -2,16 +2,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <new>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 
 #include "capture/exr.h"
-#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/capture_checks.h"
@@ -145,10 +144,24 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
     writeTriptych(options, capture, materials, settings, replayer, image, exposure);
 }
 
+// Whether a result ends before its images begin. Its first attribute is there, and no OpenEXR file begins otherwise.
+bool isCutResult(const std::filesystem::path& path) {
+  try {
+    const ExrFile file(path);
+    return false;
+  } catch (const InputError&) {
+    std::ifstream file(path, std::ios::binary);
+    std::string begin(4096, 0);
+    begin.resize(static_cast<std::size_t>(file.read(begin.data(), 4096).gcount()));
+    return begin.find("pellucid.capture") != std::string::npos;
+  }
+}
+
 // Whether `output` is a whole result of these settings. Throws InputError when it is one of others: a
 // sequence must not change its look where it was resumed.
 bool isFinished(const Options& options, const std::filesystem::path& output) {
   if (options.overwrite || !std::filesystem::exists(output)) return false;
+  if (isCutResult(output)) return false;
   const ExrFile file(output);
   if (!file.findText(kSettingsAttribute))
     throw InputError(output.string(), kSettingsAttribute, "is missing: no result of this command; --overwrite replaces the file");

@@ -6,6 +6,7 @@
 
 #include "capture/exr.h"
 #include "capture/read.h"
+#include "capture/write.h"
 #include "metrics/flicker.h"
 
 namespace {
@@ -168,6 +169,32 @@ TEST_F(Cli, FlickerOfPixelsByThemselves) {
   EXPECT_LE(worstOf("moved by -4 pixels").second, 0.002);
   EXPECT_GT(worstOf("lights turned by 0.5 degrees").first, 0.01);
   EXPECT_NE(outcome.text.find("spots, lights turned by 0.5 degrees: "), std::string::npos) << outcome.text;
+}
+
+// Nothing that a command reads is lost by what it writes.
+TEST_F(Cli, InputsAreNotOverwritten) {
+  const std::string one = path("s.0001.exr"), all = path("s.####.exr");
+  expect(0, "capture --procedural ear --size 16x16 --shadow-size 16 -o " + one);
+  const std::string before = bytes("s.0001.exr");
+  expect(2, "replay " + one + " -o " + one, "is an input of this command");
+  expect(2, "replay " + one + " --overwrite -o " + path("./s.0001.exr"), "is an input of this command");
+  expect(3, "replay '" + all + "' -o '" + all + "'", "pellucid.settings: is missing: no result of this command");
+  expect(3, "replay '" + all + "' --overwrite -o '" + all + "'", "is an input of this command");
+  EXPECT_EQ(bytes("s.0001.exr"), before);
+}
+
+TEST_F(Cli, AFullDiskIsSaid) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "needs /dev/full";
+  expect(3, "material skin1 > /dev/full");
+}
+
+// A replay says what `info` says.
+TEST_F(Cli, ReplayWarnsOfWhatItSees) {
+  expect(0, "capture --procedural ear --size 16x16 --shadow-size 16 -o " + path("c.exr"));
+  Capture capture = readCapture(path("c.exr"));
+  std::fill(capture.material.begin(), capture.material.end(), std::uint8_t{0});
+  writeCapture(capture, path("none.exr"));
+  expect(0, "replay " + path("none.exr") + " --repeat 0 -o " + path("o.exr"), "warning: no pixel has a material");
 }
 
 TEST_F(Cli, SequenceUsage) {

@@ -26,6 +26,26 @@ TEST_F(GltfCommand, AModelWithoutATranslucentMaterialIsRefused) {
   expect(0, "info " + out, "skin1");
 }
 
+TEST_F(GltfCommand, CamerasOfOneNameAreChosenByTheirNodes) {
+  GltfBuilder b = triangle();
+  b.json["cameras"] = {{{"name", "Camera"}, {"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  for (const char* node : {"Front", "Side"}) b.json["nodes"].push_back({{"name", node}, {"camera", 0}, {"translation", {0, 0, 5}}});
+  for (int i = 0; i < 3; ++i) b.json["scenes"][0]["nodes"][i] = i;
+  const std::string capture = "capture " + write("t.glb", b) + " --size 16x16 --material wax=skin1 -o " + path("o.exr") + " --camera ";
+  expect(2, capture + "Camera", "2 cameras are called \"Camera\"; name a node: auto, Camera (node Front), Camera (node Side)");
+  expect(0, capture + "Side", "wrote");
+}
+
+TEST_F(GltfCommand, NormalsAgainstTheWindingAreNamed) {
+  for (const float z : {1.0f, -1.0f}) {
+    GltfBuilder b = triangle();
+    b.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = b.vectors({0, 0, z, 0, 0, z, 0, 0, z});
+    const Outcome outcome = run("capture " + write("t.glb", b) + " --size 16x16 --material wax=skin1 -o " + path("o.exr"));
+    EXPECT_EQ(outcome.code, 0) << outcome.text;
+    EXPECT_EQ(outcome.text.find("NORMAL: points against the winding") != std::string::npos, z < 0) << outcome.text;
+  }
+}
+
 // The triangle is 2 units wide and high, and red has a transport mean free path of 1 / (.74 + .032) mm.
 TEST_F(GltfCommand, WarnsOfBodiesThatAreOpticallyThin) {
   const std::string file = write("t.glb", triangle()), out = path("o.exr");

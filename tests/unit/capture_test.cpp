@@ -522,6 +522,23 @@ TEST_F(Manifests, WarningsNameHalvesUnitsAndLightsInBodies) {
   EXPECT_TRUE(warns("no thickness is above 1 mm"));
 }
 
+// What writes a value to text would call itself for each level.
+TEST_F(Manifests, DeepJsonIsRefused) {
+  const std::string deep = std::string(200000, '[') + std::string(200000, ']');
+  expectNames(refusalOf([&] { parseJson("m.json", "{\"pellucid\": " + deep + "}"); }), {"m.json", "nested deeper than 100 levels"});
+}
+
+TEST_F(Manifests, AlbedoNextToNothingIsNamed) {
+  const auto warns = [&] {
+    const std::vector<std::string> all = read().warnings;
+    return std::any_of(all.begin(), all.end(), [](const std::string& s) { return s.find("includesAlbedo: 45 values are over 100 times") != std::string::npos; });
+  };
+  manifest["buffers"]["irradiance"] = {{"constant", {1, 1, 1}}, {"includesAlbedo", true}};
+  EXPECT_FALSE(warns());
+  manifest["buffers"]["albedo"]["constant"] = {1e-6, 1e-6, 1e-6};
+  EXPECT_TRUE(warns()) << "15 pixels have a material";
+}
+
 TEST_F(Manifests, AStarNamesAllOtherMaterials) {
   Image id(kSampleWidth, kSampleHeight, 1, -1);
   id.data[0] = 9;

@@ -54,6 +54,16 @@ protected:
   const Imath::Box2i window{{0, 0}, {kSampleWidth - 1, kSampleHeight - 1}};
 };
 
+// DWA changes channels that are named as colors are.
+TEST_F(ExrFiles, LossyCompressionIsOfColors) {
+  Imf::Header header(kSampleWidth, kSampleHeight);
+  header.compression() = Imf::DWAA_COMPRESSION;
+  write(header, {{"depth.R", &values}, {"front.Z", &values}});
+  const ExrFile file(x());
+  EXPECT_EQ(file.lossyCompression(0, "depth.R"), "DWAA");
+  EXPECT_EQ(file.lossyCompression(0, "front.Z"), "");
+}
+
 TEST_F(ExrFiles, TiledIsReadAtLevelZero) {
   for (const Imf::LevelMode mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS}) {
     Imf::Header header(kSampleWidth, kSampleHeight);
