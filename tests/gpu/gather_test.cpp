@@ -241,6 +241,22 @@ TEST_F(Gather, ClampedDepthsLetNoLightThroughClearMaterials) {
   EXPECT_GT(lit(0.001f).at(16, 16)[0], 1.5f * nothing.at(16, 16)[0]);
 }
 
+// The offset moves the surface that the map stores, and not its exit.
+TEST_F(Gather, ExitsHaveNoOffset) {
+  for (const auto encoding : {PELLUCID_DEPTH_DEVICE, PELLUCID_DEPTH_DISTANCE}) {
+    const float perUnit = encoding == PELLUCID_DEPTH_DEVICE ? 0.01f : 1.0f;
+    Capture c = backlitSlab(4, encoding);
+    std::fill(c.irradiance.data.begin(), c.irradiance.data.end(), 0.0f);
+    ShadowMap& map = c.lights[0].shadowMaps[0];
+    map.exitDepth = Image(256, 256, 1, map.depth.image.data[0] + 4 * perUnit);
+    const Image expected = replay(c, testMaterial(), gathering(8));
+    EXPECT_GT(expected.at(4, 4)[0], 0.5f);
+    map.offsetLength = 1;
+    for (float& d : map.depth.image.data) d += perUnit;
+    EXPECT_LT(relativeRmse(replay(c, testMaterial(), gathering(8)), expected), 1e-3) << encoding;
+  }
+}
+
 // Alpha-hashed hair in front of a slab lit from behind, as opaque texels in all encodings: light is what the free texels let by.
 TEST_F(Gather, SingleTexelsOfHairArePartialShadow) {
   constexpr int kTexels = 256;
