@@ -11,7 +11,7 @@
 namespace pellucid::harness {
 namespace {
 
-// Scene units beyond which a surface lies in front of a map for certain: slopes across the light's ray and half texels need fewer texels.
+// Texels' sides by which a surface lies in front of a map for certain: slopes across the light's ray and half texels need less.
 constexpr double kTexels = 8;
 
 class MapView {
@@ -28,13 +28,15 @@ public:
     const glm::dvec2 at = (glm::dvec2(clip) / clip.w * 0.5 + 0.5) * glm::dvec2(image.width, image.height);
     if (!(clip.w > 0 && at.x >= 0 && at.y >= 0 && at.x < image.width && at.y < image.height)) return std::nullopt;
     const glm::dvec3 ray = rayAt(world);
-    const double side = texelSide(clip.w), sign = depthOf(world + ray * side) > depthOf(world) ? 1 : -1;
+    const double side = texelSide(clip.w), own = depthOf(world), sign = depthOf(world + ray * side) > own ? 1 : -1;
+    const bool device = map_.depth.encoding == PELLUCID_DEPTH_DEVICE;
+    const double farthest = std::max(sign, 0.0);  // of device depths
+    if (device && sign * own > sign * farthest) return std::nullopt;  // of another cascade
     const double tolerance = kTexels * side * (1 + std::abs(map_.depthBiasSlope)) + map_.offsetLength;
     const double most = sign * (depthOf(world + ray * tolerance) + map_.depthBiasConstant);
     const auto isNear = [&](int x, int y) {
       const double stored = double(*image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1)));
-      const bool device = map_.depth.encoding == PELLUCID_DEPTH_DEVICE;
-      const bool holds = device ? sign * stored < std::max(sign, 0.0) : stored > 0 && stored < double(kLeastNoDepth);
+      const bool holds = device ? sign * stored < sign * farthest : stored > 0 && stored < double(kLeastNoDepth);
       return holds && sign * stored <= most;
     };
     for (int i = 0; i < 9; ++i)

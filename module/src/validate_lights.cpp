@@ -57,7 +57,8 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
   if (s.encoding != PELLUCID_DEPTH_DEVICE && !isRigid(toMatrix(s.options.viewFromWorld)))
     out.error(field("options.viewFromWorld"), "is not a rotation and translation, which this encoding needs");
   checkDeviceSteps(s, field, out);
-  if (s.encoding != PELLUCID_DEPTH_DEVICE) {
+  // A distance from the light has no axis.
+  if (s.encoding == PELLUCID_DEPTH_VIEW_Z || (s.encoding == PELLUCID_DEPTH_DISTANCE && !isPerspective(s))) {
     // Depth grows along the view's z: device depth does in orthographic maps, clip w in perspective ones.
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
     const double apart = degreesBetweenLines(rowOf(toMatrix(s.options.viewFromWorld), 2), rowOf(clip, isPerspective(s) ? 3 : 2));
