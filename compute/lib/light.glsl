@@ -26,7 +26,7 @@ Incident incidentLight(LightConstants light, vec3 x) {
   if (light.meta.x == PELLUCID_SHADER_LIGHT_DIRECTIONAL)
     return Incident(light.radiance.rgb, -light.direction.xyz, 0.0);
   vec3 offset = light.position.xyz - x;
-  // The floor keeps a point at the light finite: 1e-6 scene units, a millimeter in kilometers.
+  // The floor keeps a point at the light finite: 1e-6 scene units, which are 1 mm if a unit is 1 km.
   float squared = max(dot(offset, offset), 1.0e-12);
   float distanceTo = sqrt(squared);
   vec3 toLight = offset / distanceTo;

@@ -273,18 +273,19 @@ std::string ExrFile::channelFormat(int part, const std::string& channel) const {
 
 std::string ExrFile::lossyCompression(int part, const std::string& channel) const {
   const Imf::Compression compression = impl_->file->header(part).compression();
-  const bool isHalf = channelFormat(part, channel) == "half";
+  const std::string format = channelFormat(part, channel);
   const std::string suffix = channel.substr(channel.rfind('.') + 1);
   // OpenEXR's technical introduction: DWA quantizes channels of these names, B44 half floats, and keeps all others.
   static const std::set<std::string> kColors = {"R", "G", "B", "Y", "RY", "BY", "r", "g", "b", "y", "ry", "by"};
+  const bool isQuantized = format != "uint" && kColors.contains(suffix);
   switch (compression) {
     case Imf::DWAA_COMPRESSION:
-      return kColors.contains(suffix) ? "DWAA" : "";
+      return isQuantized ? "DWAA" : "";
     case Imf::DWAB_COMPRESSION:
-      return kColors.contains(suffix) ? "DWAB" : "";
+      return isQuantized ? "DWAB" : "";
     case Imf::B44_COMPRESSION:
     case Imf::B44A_COMPRESSION:
-      return isHalf ? "B44" : "";
+      return format == "half" ? "B44" : "";
     default:
       return "";
   }

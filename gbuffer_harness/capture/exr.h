@@ -41,7 +41,7 @@ public:
   int partCount() const;
   std::vector<std::string> channels(int part) const;                      // in the file's order: by name
   std::string channelFormat(int part, const std::string& channel) const;  // "half", "float", "uint"
-  // The compression that changes a channel's values so much that depths and ids lose theirs; "": none.
+  // The compression that quantizes this channel, which depths and ids do not survive; "": none.
   std::string lossyCompression(int part, const std::string& channel) const;
   std::string partName(int part) const;                                   // "": it has none
   // The eye of stereo files that a channel is of; "": of all.

@@ -469,7 +469,7 @@ void numberSharedImages(const Field& lights, Manifest& manifest) {
       if (const auto layer = maps[k].find("layer")) {
         const auto& [image, first] =
             layers.emplace(manifest.capture.lights[i].shadowMaps[k].layer, std::pair(key, layer->path())).first->second;
-        if (image != key) layer->fail("is " + layer->shown() + ", as " + first + ", whose image is another; each layer is one image");
+        if (image != key) layer->fail("is " + layer->shown() + ", as " + first + ", whose image is another; all lights share one array: number the layers of all files on");
         key = {};
       } else if (!sources.tile) {
         continue;

@@ -287,8 +287,9 @@ void multiply(Image& image, const Image& times) {
 void divideByAlbedo(const Manifest& manifest, Capture& capture) {
   // A black surface that rounding made nearly black becomes a lamp.
   constexpr float kMostTimes = 100;
-  const float largest = *std::max_element(capture.irradiance.data.begin(), capture.irradiance.data.end(),
-                                          [](float a, float b) { return !(a >= b) && b < kLeastNoDepth; });
+  float largest = 0;
+  for (const float light : capture.irradiance.data)
+    if (std::isfinite(light)) largest = std::max(largest, light);
   std::size_t bright = 0;
   for (std::size_t i = 0; i < capture.irradiance.data.size(); ++i) {
     float& light = capture.irradiance.data[i];

@@ -12,6 +12,7 @@
 #include "capture/material.h"
 #include "common/error.h"
 #include "reference/camera.h"
+#include "replay/exposure.h"
 #include "replay/frame.h"
 
 namespace pellucid::harness {
@@ -216,8 +217,10 @@ std::vector<std::string> thinBodies(const Capture& capture, const std::vector<Pe
 }
 
 std::vector<std::string> findingsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials, PellucidSeverity severity) {
+  ReplaySettings settings;
+  settings.preExposure = preExposureFor(capture);  // as a replay chooses it
   FrameData data;
-  makeFrame(capture, materials, {}, data);
+  makeFrame(capture, materials, settings, data);
   std::pair<PellucidSeverity, std::vector<std::string>> found{severity, {}};
   pellucidValidateFrame(
       &data.frame,
@@ -231,6 +234,8 @@ std::vector<std::string> findingsOf(const Capture& capture, const std::vector<Pe
 
 std::vector<std::string> warningsOf(const Capture& capture, const std::vector<PellucidMaterial>& materials) {
   std::vector<std::string> sentences = capture.warnings;
+  const Matrix& clip = capture.clipFromView;
+  if (clip[2] != 0 || clip[6] != 0 || clip[3] != 0 || clip[7] != 0) return sentences;  // oblique planes: the module refuses them with advice
   checkPixels(capture, reference::Camera(capture.clipFromView, capture.width, capture.height), sentences);
   for (const auto& more : {findingsOf(capture, materials, PELLUCID_SEVERITY_WARNING), strangeMaps(capture), coarseTables(capture), thinBodies(capture, materials)})
     sentences.insert(sentences.end(), more.begin(), more.end());

@@ -64,11 +64,13 @@ ModelCamera chooseCamera(const CaptureOptions& options, const Model& model, cons
                       turns);
   }
   std::string names = "auto";
-  std::vector<ModelCamera> found;
+  std::vector<ModelCamera> found, ofNode;
   for (const ModelCamera& camera : cameras) {
+    if (camera.node == wanted) ofNode.push_back(camera);
     if (camera.name == wanted || camera.node == wanted) found.push_back(camera);
     names += ", " + camera.name + (camera.node.empty() || camera.node == camera.name ? "" : " (node " + camera.node + ")");
   }
+  if (ofNode.size() == 1) return ofNode.front();  // Blender's objects and their data often have each other's names
   if (found.size() == 1) return found.front();
   if (found.empty()) throw UsageError("--camera: there is no \"" + wanted + "\" but " + names);
   throw UsageError("--camera: " + std::to_string(found.size()) + " cameras are called \"" + wanted + "\"; name a node: " + names);

@@ -10,14 +10,12 @@
 #include <sstream>
 
 #include "capture/exr.h"
-#include "capture/manifest_parts.h"
 #include "capture/material.h"
 #include "capture/read.h"
 #include "cli/capture_checks.h"
 #include "cli/commands.h"
 #include "cli/settings.h"
 #include "reference/camera.h"
-#include "replay/frame.h"
 
 namespace pellucid::harness {
 

@@ -52,7 +52,7 @@ InitWords wordsOf(const Options& options) {
 
 // What is there may hold a person's edits: the manifest itself asks for them.
 void requireFree(const std::filesystem::path& output, const Options& options) {
-  requireNoInput(output, {options.files.begin(), options.files.end()});
+  requireNoInput("-o", output, {options.files.begin(), options.files.end()});
   std::error_code error;
   if (!options.overwrite && std::filesystem::is_regular_file(output, error))
     throw UsageError("-o " + output.string() + ": is there; --overwrite replaces it, or -o names another file");

@@ -33,7 +33,9 @@ public:
     const double farthest = std::max(sign, 0.0);  // of device depths
     if (device && sign * own > sign * farthest) return std::nullopt;  // of another cascade
     const double tolerance = kTexels * side * (1 + std::abs(map_.depthBiasSlope)) + map_.offsetLength;
-    const double most = sign * (depthOf(world + ray * tolerance) + map_.depthBiasConstant);
+    // Engines clamp to the near plane what lies before it.
+    const double drawn = std::max(sign * depthOf(world + ray * tolerance), device ? std::min(sign, 0.0) : 0.0);
+    const double most = drawn + sign * map_.depthBiasConstant + map_.depthStep;
     const auto isNear = [&](int x, int y) {
       const double stored = double(*image.at(std::clamp(x, 0, image.width - 1), std::clamp(y, 0, image.height - 1)));
       const bool holds = device ? sign * stored < sign * farthest : stored > 0 && stored < double(kLeastNoDepth);
@@ -78,16 +80,20 @@ private:
 
 // Positions of surfaces with a material, some thousand at most.
 std::vector<glm::dvec3> surfacesOf(const Capture& capture) {
-  constexpr int kAcross = 64;
+  constexpr std::size_t kMost = 4096;
   const reference::Camera camera(capture.clipFromView, capture.width, capture.height);
   const glm::dmat4 worldFromView = glm::inverse(toGlm(capture.viewFromWorld));
+  const std::size_t pixels = capture.material.size() - static_cast<std::size_t>(std::count(capture.material.begin(), capture.material.end(), 0));
+  const std::size_t step = pixels / kMost + 1;
   std::vector<glm::dvec3> surfaces;
-  for (int y = 0; y < capture.height; y += std::max(capture.height / kAcross, 1))
-    for (int x = 0; x < capture.width; x += std::max(capture.width / kAcross, 1)) {
-      if (capture.material[static_cast<std::size_t>(y) * static_cast<std::size_t>(capture.width) + static_cast<std::size_t>(x)] == 0) continue;
-      const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
-      if (front) surfaces.emplace_back(worldFromView * glm::dvec4(camera.position({x + 0.5, y + 0.5}, *front), 1));
-    }
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < capture.material.size(); ++i) {
+    if (capture.material[i] == 0 || seen++ % step != 0) continue;
+    const auto width = static_cast<std::size_t>(capture.width);
+    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    const auto front = camera.planarDepth(*capture.frontDepth.image.at(x, y), capture.frontDepth.encoding);
+    if (front) surfaces.emplace_back(worldFromView * glm::dvec4(camera.position({x + 0.5, y + 0.5}, *front), 1));
+  }
   return surfaces;
 }
 
@@ -110,10 +116,11 @@ std::vector<std::string> strangeMaps(const Capture& capture) {
           lacking += *lacks;
           break;
         }
-    const std::string name = "lights[" + std::to_string(i) + "].shadowMap: ";
+    const std::string name = "lights[" + std::to_string(i) + (light.shadowMaps.size() > 1 ? "].shadowMaps: " : "].shadowMap: ");
     // Silhouettes, hair and undrawn bodies are fewer. Maps of back faces lack what is lit.
     constexpr double kMostLacking = 0.2;
-    if (double(lacking) > kMostLacking * double(inside))
+    constexpr std::size_t kFewest = 16;  // of fewer, a silhouette decides
+    if (inside >= kFewest && double(lacking) > kMostLacking * double(inside))
       sentences.push_back(name + std::to_string(100 * lacking / inside) +
                           " % of the surfaces in it lie in front of what it shows: another frame, matrix, unit or encoding, a bias that no "
                           "field states, culled front faces (\"faces\": \"back\"), or bodies that the map lacks");

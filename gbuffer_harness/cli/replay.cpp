@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "capture/exr.h"
 #include "capture/material.h"
@@ -117,7 +118,8 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
   const Capture capture = readCapture(options.input);
   std::filesystem::path output = options.output;
   if (output.empty()) output = std::filesystem::path(options.input).stem().string() + ".pellucid.exr";
-  requireNoInput(output, capture.files);
+  requireNoInput("-o", output, capture.files);
+  if (!options.triptych.empty()) requireNoInput("--triptych", options.triptych, capture.files);
   const std::vector<PellucidMaterial> materials = compileMaterials(capture);
   warn(warningsOf(capture, materials));
   Device device({options.device, false});
@@ -144,7 +146,8 @@ void replayOne(const Options& options, const ReplaySettings& settings) {
     writeTriptych(options, capture, materials, settings, replayer, image, exposure);
 }
 
-// Whether a result ends before its images begin. Its first attribute is there, and no OpenEXR file begins otherwise.
+// True of a result that was cut before its images. Headers are sorted by name, so that pellucid.capture is the first attribute of a result. No
+// other EXR file has this attribute.
 bool isCutResult(const std::filesystem::path& path) {
   try {
     const ExrFile file(path);
@@ -161,7 +164,7 @@ bool isCutResult(const std::filesystem::path& path) {
 // sequence must not change its look where it was resumed.
 bool isFinished(const Options& options, const std::filesystem::path& output) {
   if (options.overwrite || !std::filesystem::exists(output)) return false;
-  if (isCutResult(output)) return false;
+  if (std::filesystem::file_size(output) == 0 || isCutResult(output)) return false;
   const ExrFile file(output);
   if (!file.findText(kSettingsAttribute))
     throw InputError(output.string(), kSettingsAttribute, "is missing: no result of this command; --overwrite replaces the file");
@@ -209,7 +212,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     if (isFinished(options, output(frame))) return counted([&] { ++skipped; });
     if (!std::filesystem::exists(input(frame))) return counted([&] { missing.push_back(frame); });
     const Capture capture = readCapture(input(frame));
-    requireNoInput(output(frame), capture.files);
+    requireNoInput("-o", output(frame), capture.files);
     const std::vector<PellucidMaterial> materials = compileMaterials(capture);
     std::vector<std::string> sentences = warningsOf(capture, materials);
     if (settings.reuse == PELLUCID_REUSE_ACCUMULATE && capture.motion.empty())
@@ -217,7 +220,7 @@ void replaySequence(const Options& options, const ReplaySettings& settings) {
     counted([&] {
       for (const std::string& sentence : sentences) {
         std::string kind = sentence;
-        std::erase_if(kind, [](char c) { return c >= '0' && c <= '9'; });
+        std::erase_if(kind, [](char c) { return std::string_view("0123456789.+-e").find(c) != std::string_view::npos; });
         warnings.emplace(kind, "frame " + std::to_string(frame) + ": " + sentence);
       }
     });

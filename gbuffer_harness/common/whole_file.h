@@ -51,12 +51,12 @@ void writeWhole(const std::filesystem::path& path, const Write& write) {
   throw InputError(path.string(), "", "cannot be written: " + reason);
 }
 
-// Throws UsageError when `output` is one of the files that a command reads, also by another path or a link.
-inline void requireNoInput(const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
+// Throws UsageError when `output`, which an option names, is one of the files that a command reads, also by another path or a link.
+inline void requireNoInput(const std::string& option, const std::filesystem::path& output, const std::vector<std::filesystem::path>& inputs) {
   std::error_code error;  // of a file that is not there: it is no other's
   for (const std::filesystem::path& input : inputs)
     if (std::filesystem::equivalent(output, input, error))
-      throw UsageError("-o " + output.string() + ": is an input of this command, which would be lost; name another file");
+      throw UsageError(option + " " + output.string() + ": is an input of this command, which would be lost; name another file");
 }
 
 // writeWhole() of a text; a full disk is an InputError, too.

@@ -43,8 +43,9 @@ Anchor anchorOf(const Model& model, const std::vector<glm::dvec3>& positions, co
     high = glm::max(high, positions[i]);
   }
   const Anchor center{0.5 * (low + high), 0.5 * glm::length(high - low)};
-  const auto found = std::find_if(model.cameras.begin(), model.cameras.end(),
-                                  [&](const ModelCamera& c) { return camera.empty() || c.name == camera || c.node == camera; });
+  auto found = std::find_if(model.cameras.begin(), model.cameras.end(), [&](const ModelCamera& c) { return camera.empty() || c.node == camera; });
+  if (found == model.cameras.end())
+    found = std::find_if(model.cameras.begin(), model.cameras.end(), [&](const ModelCamera& c) { return c.name == camera; });
   if (found == model.cameras.end()) return center;
   const glm::dvec3 eye = glm::inverse(toGlm(found->viewFromWorld))[3];
   // An orthographic camera's near plane may lie at its eye.

@@ -172,7 +172,8 @@ bool isOnlyStem(const ChannelGroup& group, const std::string& name, const Name& 
 bool hasName(const ChannelGroup& group, const Name& known) {
   const std::vector<std::string> names = namesOf(group);
   if (isNoRole(names[0]) || (names.size() > 1 && isNoRole(names[1]))) return false;
-  if (known.role == Role::Irradiance && isNoDiffuseLight(names[0])) return false;
+  // A file may be called after its body: sss_irradiance.
+  if (known.role == Role::Irradiance && isNoDiffuseLight(names[0]) && (group.isNamed || names[0].find("irradiance") == std::string::npos)) return false;
   return std::any_of(names.begin(), names.end(),
                      [&](const std::string& name) { return fits(name, known) && !isOnlyStem(group, name, known); });
 }

@@ -261,7 +261,8 @@ void Builder::addMaterial() {
   const Image image = read(Role::Material);
   const auto stored = storedIds(image);
   if (words_.materialIds.empty() && !stored)
-    return doubt("material", "its values are no small whole numbers, so everything is taken for translucent");
+    return doubt("material", "its values are no small whole numbers, so everything is taken for translucent. Bytes that were read as fractions need "
+                             "\"scale\": 255 and a \"map\" in the buffer");
   json = sourceOf(Role::Material);
   words_.materialIds.empty() ? mapFoundIds(*stored, json) : mapGivenIds(image, json);
   result_.json["buffers"]["material"] = json;

@@ -13,8 +13,9 @@ namespace {
 constexpr uint32_t kMostTexels = 65536;
 
 constexpr double kRadian = 57.29577951308232;  // degrees
-// Between a light and its map, or both matrices of a map: more than engines that draw a sun's maps every few frames are behind.
-constexpr double kMostDegrees = 5;
+// Most degrees between a light and a map, or between both matrices of a map. Beyond, light comes from where it does not: a warning, as
+// engines draw maps of a moving sun now and then. A wrong axis or sign is farther off.
+constexpr double kMostDegrees = 5, kWrongAxis = 30;
 
 // Row of a matrix without its translation.
 glm::dvec3 rowOf(const glm::dmat4& m, int row) { return {m[0][row], m[1][row], m[2][row]}; }
@@ -30,7 +31,7 @@ double degreesBetweenLines(const glm::dvec3& a, const glm::dvec3& b) {
   return std::min(degrees, 180 - degrees);
 }
 
-// Engines' factors and numbers of steps, which the caller has not turned into device depths, exceed all that is sensible.
+// Refuses constant factors and numbers of steps that the caller has not turned into device depths.
 void checkDeviceSteps(const PellucidShadowMap& s, const auto& field, Findings& out) {
   constexpr float kMostBias = 0.5F, kMostStep = 0.1F;  // of depths from 0 to 1; a step of 8 bits is .004
   if (s.encoding != PELLUCID_DEPTH_DEVICE) return;
@@ -61,7 +62,8 @@ void checkShadowMap(const PellucidFrame& f, uint32_t index, Findings& out) {
   if (s.encoding == PELLUCID_DEPTH_VIEW_Z || (s.encoding == PELLUCID_DEPTH_DISTANCE && !isPerspective(s))) {
     // Depth grows along the view's z: device depth does in orthographic maps, clip w in perspective ones.
     const glm::dmat4 clip = toMatrix(s.clipFromWorld);
-    const double apart = degreesBetweenLines(rowOf(toMatrix(s.options.viewFromWorld), 2), rowOf(clip, isPerspective(s) ? 3 : 2));
+    const glm::dvec3 ahead = -rowOf(toMatrix(s.options.viewFromWorld), 2);
+    const double apart = isPerspective(s) ? degreesBetween(ahead, rowOf(clip, 3)) : degreesBetweenLines(ahead, rowOf(clip, 2));
     if (apart > kMostDegrees)
       out.error(field("options.viewFromWorld"), "looks ", static_cast<float>(apart), " degrees off clipFromWorld: both belong to one camera at the light");
   }
@@ -121,9 +123,11 @@ void checkDirection(const PellucidFrame& f, uint32_t index, Findings& out) {
     glm::dvec3 ray = glm::cross(rowOf(clip, 0), rowOf(clip, 1));
     double apart = degreesBetweenLines(ray, direction);
     if (s.encoding != PELLUCID_DEPTH_DEVICE && glm::dot(rowOf(toMatrix(s.options.viewFromWorld), 2), direction) > 0) apart = 180 - apart;
+    const Field field("lights[", index, "].direction");
+    if (apart > kWrongAxis)
+      return out.error(field, "is ", static_cast<float>(apart), " degrees off the rays of shadowMaps[", i, "], by its matrices; light travels along direction");
     if (apart > kMostDegrees)
-      return out.error(Field("lights[", index, "].direction"), "is ", static_cast<float>(apart), " degrees off the rays of shadowMaps[", i,
-                       "], by its matrices; light travels along direction");
+      out.warning(field, "is ", static_cast<float>(apart), " degrees off the rays of shadowMaps[", i, "], by its matrices: the map is of another moment");
   }
   if (l.type == PELLUCID_LIGHT_SPOT && !seen)
     out.error(Field("lights[", index, "].direction"), "points away from what the light's shadow maps show; light travels along direction");

@@ -136,7 +136,7 @@ typedef struct PellucidFrameOptions {
   uint32_t materialShift, materialMask;
   /* R16G16B16A16_SFLOAT (default), R32G32B32A32_SFLOAT, or B10G11R11_UFLOAT_PACK32 without alpha. The format must fit
    * PellucidContextOptions::outputFormat. Relative error of 32 bits: 1e-6 without diffusion, 2^-10 with diffusion.
-   * Of B10G11R11: 2^-7 in red and green, 2^-6 in blue. */
+   * Relative error of B10G11R11: 2^-7 in red and green, 2^-6 in blue. */
   VkFormat outputFormat;
   /* 0 (default): the result replaces the output. 1: the result is added to the output's color, for renderers that do not composite in a
    * later pass (docs/integration.md). The sum is clamped to 0..65504, NaN counts as 0, and alpha stays. The output then has usage

@@ -200,8 +200,8 @@ double profileLength(const PellucidMaterial& m, int channel) {
 // Longest mean distance of samples, of diffusion lengths. Measured: procedural balls of skin, rings of
 // marble.
 constexpr double kLongest = 2.0 / 3;
-// Decay of the longest sample and of the entries' scale, of the fastest decay, at least: white media decay over kilometers, and
-// neither samples nor entries would be left for bodies.
+// Least decay of the longest sample and of the entries' scale, as a part of the fastest decay. White media decay over kilometers: without
+// this limit, samples and entries would lie outside all bodies.
 constexpr double kLeastDecay = 0.005;
 
 }  // namespace
