@@ -38,7 +38,7 @@ TEST(ReferenceDiffusion, HalfPlaneStep) {
     const int middle = static_cast<int>(34 / pixel);
     const glm::dvec2 direction(std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)));
     Capture c = facingPlane(2 * middle, 2 * middle, pixel);
-    paint(c, [&](glm::dvec2 corner) { return halfPlaneCoverage(corner, pixel, direction); });
+    paint(c, [&, side = pixel](glm::dvec2 corner) { return halfPlaneCoverage(corner, side, direction); });
     const DiffusedCapture burley(c, burleyMaterial(1)), gaussian(c, gaussianMaterial(1));
     for (const int offset : offsets) {
       const int x = middle + offset;
